@@ -16,6 +16,7 @@
 #include "tod/measurement/contrast_error.h"
 #include "tod/plate/test_pattern.h"
 #include "tod/psychometric/contrast_slope.h"
+#include "tod/registration/registration.h"
 #include "tod/schedule/adaptive_schedule.h"
 
 namespace todbench {
@@ -23,9 +24,8 @@ namespace {
 
 /// Size of the part of a reference triangle that effective_contrast() takes, over the triangle's own.
 double inner_part(double size_px) {
-  constexpr double inner_share = 0.45, inner_most_px = 1.25;  // effective_contrast()
   const double radius_px = triangle_centroid_to_base * size_px;
-  return 1 - std::min(inner_share * radius_px, inner_most_px) / radius_px;
+  return 1 - std::min(contrast_inner_share * radius_px, contrast_inner_most_px) / radius_px;
 }
 
 /// Variance of a frame's contrast due to noise of this standard deviation per pixel, row and column.
@@ -40,14 +40,14 @@ struct FrameContrast {
 
 FrameContrast frame_contrast(const TargetPlate& plate, double pixels_per_mm, double min_size_px,
                              const PixelNoise& noise) {
-  constexpr double of_median = std::numbers::pi / 2, ring_width_px = 3;
+  constexpr double of_median = std::numbers::pi / 2;
   FrameContrast out;
   for (const PlateTriangle& t : plate.triangles) {
     const double size_px = t.size_mm * pixels_per_mm;
     if (size_px < min_size_px) continue;
     const double inner_px = inner_part(size_px) * size_px, height = 3 * triangle_centroid_to_base;
     const double perimeter = 6 / height;  // an equilateral triangle of unit area has the height h, the side 2 / h
-    const double inside = std::max(1.0, inner_px * inner_px), ring = ring_width_px * perimeter * size_px;
+    const double inside = std::max(1.0, inner_px * inner_px), ring = contrast_ring_width_px * perimeter * size_px;
     out.variance += of_median * std::pow(noise.pixel_k, 2) * (1 / inside + 1 / ring) +
                     std::pow(noise.row_k, 2) / std::max(1.0, height * inner_px) +
                     std::pow(noise.column_k, 2) / std::max(1.0, 2 / height * inner_px);

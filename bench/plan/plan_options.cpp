@@ -162,7 +162,9 @@ AnswersTaken chosen_answers(const Plan& plan, const SensorSpec& sensor, std::opt
   if (chosen_estimator(plan, sensor).estimator == FitEstimator::weibull) return binary(AnswersReason::weibull);
   if (plan.fit.lapse != 0.0) return binary(AnswersReason::lapse);
   if (plan.camera.contrast == ContrastUnit::grey_levels) return binary(AnswersReason::grey_levels);
-  if (presentations_of_contrast(plan) < least_graded_presentations) return binary(AnswersReason::few_presentations);
+  // A ramp has many presentations in every set-up, whatever its phases are.
+  if (plan.schedule.kind != ScheduleKind::ramp && presentations_of_contrast(plan) < least_graded_presentations)
+    return binary(AnswersReason::few_presentations);
   return graded(AnswersReason::twin);
 }
 

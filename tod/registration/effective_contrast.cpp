@@ -13,10 +13,7 @@
 namespace todbench {
 namespace {
 
-constexpr double inner_share = 0.45;    // of the inscribed radius, kept away from the edge
-constexpr double inner_most_px = 1.25;  // three blur widths of 0.4 px
 constexpr double ring_begin_px = 1.5;
-constexpr double ring_width_px = 3;
 
 /// Distance to the edge of a convex polygon, > 0 inside.
 double depth(const Polygon& polygon, cv::Point2d at) {
@@ -86,7 +83,7 @@ struct Samples {
 /// Pixels of the inside and of the ring round triangle `which`; pixels near other triangles belong to neither.
 Samples samples(const cv::Mat1d& picture, const std::vector<Polygon>& outlines, std::size_t which, double margin) {
   const Polygon& own = outlines[which];
-  const double reach = ring_begin_px + ring_width_px;
+  const double reach = ring_begin_px + contrast_ring_width_px;
   const PixelBox box = box_round(own, reach);
   Samples result;
   double deepest = -std::numeric_limits<double>::infinity();
@@ -117,7 +114,7 @@ Samples samples(const cv::Mat1d& picture, const std::vector<Polygon>& outlines, 
 /// is the mean of a ring; empty: a pixel of both leaves the picture, or the ring touches another triangle.
 std::optional<double> summed_contrast(const cv::Mat1d& picture, const std::vector<Polygon>& outlines,
                                       std::size_t which) {
-  constexpr double margin_px = 2, reach_px = margin_px + ring_width_px;
+  constexpr double margin_px = 2, reach_px = margin_px + contrast_ring_width_px;
   const PixelBox box = box_round(outlines[which], reach_px);
   if (box.left < 0 || box.top < 0 || box.right >= picture.cols || box.bottom >= picture.rows) return std::nullopt;
   double sum = 0, ring = 0, pixels = 0, ring_pixels = 0;
@@ -173,7 +170,7 @@ Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const Tar
       if (p.x >= 0 && p.y >= 0 && p.x <= picture.cols - 1 && p.y <= picture.rows - 1) continue;
       return fail(ErrorCode::calibration, doing + t.name + " is not entirely inside the picture");
     }
-    const double margin = std::min(inner_share * triangle_centroid_to_base * size, inner_most_px);
+    const double margin = std::min(contrast_inner_share * triangle_centroid_to_base * size, contrast_inner_most_px);
     const Samples s = samples(picture, outlines, k, margin);
     if (s.ring.empty()) return fail(ErrorCode::calibration, doing + t.name + " has no free surround in the picture");
     const double noise = spread(s.ring);

@@ -101,6 +101,11 @@ struct EffectiveContrast {
   std::vector<ReferenceTriangle> references;  ///< those used
 };
 
+/// Areas of effective_contrast().
+inline constexpr double contrast_inner_share = 0.45;    ///< of the inscribed radius, from the edge to the inside
+inline constexpr double contrast_inner_most_px = 1.25;  ///< the same at most: three blur widths of 0.4 px
+inline constexpr double contrast_ring_width_px = 3;
+
 /// Measures the contrast of every triangle of at least `min_size_px`: median of the inside (0.45 of the inscribed
 /// radius, at most 1.25 px, away from the edge) minus median of a ring 3 px wide that begins 1.5 px outside; means if
 /// `level` states so.

@@ -9,9 +9,9 @@
 #include "bench/gui/presenters/measure_presenter.h"
 #include "bench/gui/presenters/naked_eye_presenter.h"
 #include "bench/gui/presenters/person_presenter.h"
+#include "bench/judgement/verdict.h"
 #include "bench/report/number_format.h"
 #include "bench/report/tod_figures.h"
-#include "tod/psychometric/acuity.h"
 
 namespace todbench {
 namespace {
@@ -28,7 +28,7 @@ QString false_alarms_in_words(const PersonResult& result) {
 }
 
 QString s75_text(const PsychometricFit& fit) {
-  return QString::fromStdString(with_interval(stated_threshold(fit), fit.ci95));
+  return QString::fromStdString(with_interval(identified_threshold(fit), fit.ci95));
 }
 
 }  // namespace
@@ -125,7 +125,7 @@ QString result_of_triangles(const HumanPresenter& human, const MeasurePresenter&
     means = "<p>Mean over people, interval between people:</p><table cellspacing=4>" + means + "</table>";
   const auto& points = human.record()->curve.points;
   const bool all_found =
-      std::ranges::all_of(points, [](const TodPoint& p) { return stated_threshold(p.fit).has_value(); });
+      std::ranges::all_of(points, [](const TodPoint& p) { return identified_threshold(p.fit).has_value(); });
   return "<p>" + human.problem() +
          "</p><table cellspacing=4><tr><th>ΔT</th><th>S75 human (mrad)</th><th>model (mrad)</th></tr>" + rows +
          "</table>" + (all_found ? "" : "<p>Limits without a value: the answers do not determine the threshold.</p>") +

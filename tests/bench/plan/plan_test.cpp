@@ -275,6 +275,11 @@ TEST(Plan, WithoutAnswersTakesGradedOnesWhereTheirIntervalsAreProven) {
   EXPECT_EQ(chosen(one_plate + "phases = 8\n").kind, AnswerKind::graded);
   EXPECT_EQ(chosen(one_plate + "phases = 8\n[simulation]\nphases = 7\n").kind, AnswerKind::binary)
       << "camera and twin have the same";
+  EXPECT_EQ(chosen(one_plate + "phases = 1\n" + schedule +
+                   "kind = \"ramp\"\nramp_k_per_s = 1\nfrom_delta_t_k = 16.9\nto_delta_t_k = 0.23\n")
+                .kind,
+            AnswerKind::graded)
+      << "presentations follow from the rate";
 }
 
 TEST(Plan, AnEmptyFileIsThePlanOfDefaults) {
