@@ -21,7 +21,8 @@ struct U3vIdentity {
 [[nodiscard]] U3vIdentity u3v_identity(ArvDevice* device);
 
 /// Checks that the stream registers of a USB3 Vision camera (USB3 Vision 1.0, table 5-8) are safe for Aravis, which
-/// divides by their sizes and reserves memory by them. GigE cameras always pass. Errors: `not_found` with the register.
+/// divides by the sizes in them and allocates memory by them. GigE cameras always pass. Errors: `not_found` with the
+/// register.
 [[nodiscard]] Result<void> check_stream_registers(ArvDevice* device);
 
 }  // namespace todbench

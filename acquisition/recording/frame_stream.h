@@ -72,7 +72,7 @@ class FrameStreamWriter {
   std::unique_ptr<std::mutex> appending_ = std::make_unique<std::mutex>();  ///< guards all other members
 };
 
-/// An opened recording. Readings and failures are in order; a failure precedes the frame with its index.
+/// An opened recording. Readings and failures are in order. A failure has the index of the frame after it.
 struct FrameStream {
   StreamHeader header;
   Recording recording;

@@ -12,7 +12,7 @@ namespace todbench {
 
 /// Arguments of the parts of `todbench sweep`.
 struct SweepArguments {
-  /// `file`: sweep file. `scheduler`: of `tasks`: parallel, slurm, gridengine, snakemake or make. `engine`: of
+  /// `file`: sweep file. `scheduler` for `tasks`: parallel, slurm, gridengine, snakemake or make. `engine` for
   /// `submit`: local or slurm. `options_file`: file with scheduler options of the site; empty: none. `csv`, `sqlite`,
   /// `page`: output files of `collect`; empty: default beside the results, or no page. `response`: column whose
   /// dependence on the parameters is computed; empty: default of the kind of sweep.

@@ -23,7 +23,7 @@ struct ComparedItem {
 /// Kind of reference value (assigned value of ISO 13528).
 enum class ReferenceMethod {
   weighted_mean,  ///< Cox 2002, procedure A: the results that are not outlying are consistent
-  median,         ///< Cox 2002, procedure B: they are not consistent, but at least three quarters of them are
+  median,         ///< Cox 2002, procedure B: not all results are consistent, but three quarters or more are
   paule_mandel,   ///< the results scatter more than their uncertainties explain
 };
 /// Returns the name of the enumerator.
@@ -67,7 +67,7 @@ struct LaboratorySummary {
   std::string laboratory;
   int items = 0;
   double combined_zeta = 0;  ///< sum of its zeta against the other laboratories over sqrt(items); standard normal
-  double p = 1;              ///< probability of a combined zeta at least as large by chance, for this laboratory alone
+  double p = 1;              ///< chance probability of at least this combined zeta, for this laboratory alone
   bool outlying = false;
 };
 

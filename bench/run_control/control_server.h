@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HTTP server of run control: the interface behind sockets, with bounds on requests and connections.
+// HTTP server of run control: the interface on a socket, with limits on requests and connections.
 #pragma once
 
 #include <filesystem>

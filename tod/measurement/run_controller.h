@@ -29,7 +29,7 @@ inline constexpr std::array all_moments{Moment::correction_due, Moment::correcte
 enum class FramesWhilePresenting {
   leave,  ///< not requested: for a camera that exposes only on request
   take,   ///< taken on a separate thread, so that queues stay short and every correction is detected
-  repeat  ///< as many are requested as RunController::asked_while_presenting() returns: for a replay
+  repeat  ///< RunController::asked_while_presenting() returns how many are requested: for a replay
 };
 
 /// External inputs of a run: clock, pauses, frame requests and recovery of a lost camera. The returned values decide

@@ -9,12 +9,12 @@
 namespace todbench {
 
 /// Additional interface of a Target whose steps begin on command and end at once. Without it, present() makes the step
-/// and returns when it has settled. One thread at a time, that of the Target.
+/// and returns when it has settled. Called on the thread of the Target only.
 class SteppingTarget {
  public:
   virtual ~SteppingTarget() = default;
-  /// Steps from the presented state to another contrast, at a moment within the next frame that the camera cannot
-  /// predict. Returns before the step. Errors: `invalid_input` (a contrast that it cannot show), `interrupted`.
+  /// Steps from the presented state to another contrast, at a random time within the next frame. The camera cannot
+  /// predict it. Returns before the step. Errors: `invalid_input` (a contrast that it cannot show), `interrupted`.
   [[nodiscard]] virtual Result<void> step_to(double delta_t_k, std::stop_token stop) = 0;
 };
 

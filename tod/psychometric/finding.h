@@ -13,15 +13,15 @@ namespace todbench {
 
 /// Subject of a finding, with the meaning of its value and limit.
 enum class FindingKind {
-  deviance,         ///< shape of the answers against the model; standard deviations (of the direction in the sentence)
-  lapse,            ///< a free lapse explains the answers better; 2 ln likelihood ratio, corrected for clusters
-  overdispersion,   ///< answers scatter more than chance; ratio of variances
-  underdispersion,  ///< answers scatter less than chance; ratio of variances
-  extrapolation,    ///< threshold outside the tested sizes; size, nearest tested size
-  slope,            ///< slope at an end of its domain; slope, that end
-  direct_estimate,  ///< fit against the estimate without trials; difference in percent, joint tolerance
-  clipping,         ///< saturated pixels in windows of triangles; share of trials
-  rounding,         ///< a count is wider than the noise; standard deviation of the noise in counts
+  deviance,              ///< shape of the answers against the model; standard deviations, in the stated direction
+  lapse,                 ///< a free lapse explains the answers better; 2 ln likelihood ratio, corrected for clusters
+  overdispersion,        ///< answers scatter more than chance; ratio of variances
+  underdispersion,       ///< answers scatter less than chance; ratio of variances
+  extrapolation,         ///< threshold outside the tested sizes; size, nearest tested size
+  slope,                 ///< slope at an end of its domain; slope, that end
+  direct_estimate,       ///< fit against the estimate without trials; difference in percent, joint tolerance
+  clipping,              ///< saturated pixels in windows of triangles; share of trials
+  rounding,              ///< a count is wider than the noise; standard deviation of the noise in counts
   temporal_correlation,  ///< successive frames share noise; correlation
   surrogate,             ///< pictures that the optics model of the twin cannot produce; chi-square, its limit
   identity,  ///< curves of different plates, of the same answers, or fitted with different functions; no figures
