@@ -246,7 +246,9 @@ TEST(Plan, WithoutAnEstimatorTakesTheFunctionOfTheTwinWhereThereIsOne) {
 
 TEST(Plan, WithoutAnswersTakesGradedOnesWhereTheirIntervalsAreProven) {
   const auto chosen = [](const std::string& text, const SensorSpec& sensor = {}) {
-    return chosen_answers(parse(text).value(), sensor);
+    const auto plan = parse(text);
+    EXPECT_TRUE(plan) << text << (plan ? "" : plan.error().message);
+    return plan ? chosen_answers(*plan, sensor) : AnswersTaken{};
   };
   const auto binary = [](AnswersReason reason) { return AnswersTaken{AnswerKind::binary, 1, reason}; };
   SensorSpec behind_module;
@@ -275,10 +277,14 @@ TEST(Plan, WithoutAnswersTakesGradedOnesWhereTheirIntervalsAreProven) {
   EXPECT_EQ(chosen(one_plate + "phases = 8\n").kind, AnswerKind::graded);
   EXPECT_EQ(chosen(one_plate + "phases = 8\n[simulation]\nphases = 7\n").kind, AnswerKind::binary)
       << "camera and twin have the same";
-  EXPECT_EQ(chosen(one_plate + "phases = 1\n" + schedule +
-                   "kind = \"ramp\"\nramp_k_per_s = 1\nfrom_delta_t_k = 16.9\nto_delta_t_k = 0.23\n")
-                .kind,
-            AnswerKind::graded)
+  const std::string six_set_ups =
+      "[target]\ndistance_m = 2\nphases = 1\nmax_contrast_lag_s = 0\n"
+      "mountings = [\"identity\", \"rotated_180\", \"mirrored_horizontally\"]\n";
+  EXPECT_EQ(chosen(six_set_ups).kind, AnswerKind::binary);
+  EXPECT_EQ(
+      chosen(six_set_ups + schedule + "kind = \"ramp\"\nramp_k_per_s = 1\nfrom_delta_t_k = 16.9\nto_delta_t_k = 0.23\n")
+          .kind,
+      AnswerKind::graded)
       << "presentations follow from the rate";
 }
 
@@ -343,8 +349,8 @@ INSTANTIATE_TEST_SUITE_P(
                 "did you mean 'identity'?"},
         Mistake{"mounting_twice", "[target]\ndistance_m = 2\nmountings = [\"identity\", \"identity\"]\n",
                 "plan.toml:3: key 'mountings' in [target]: 'identity' is listed twice"},
-        Mistake{"unknown_plate", "[target]\ndistance_m = 2\nplates = [\"tcat-c\"]\n",
-                "plan.toml:3: key 'plates' in [target]: unknown plate 'tcat-c', did you mean 'tcat-a'?"},
+        Mistake{"unknown_plate", "[target]\ndistance_m = 2\nplates = [\"tcat-x\"]\n",
+                "plan.toml:3: key 'plates' in [target]: unknown plate 'tcat-x', did you mean 'tcat-a'?"},
         Mistake{"plate_twice", "[target]\ndistance_m = 2\nplates = [\"tcat-a\", \"tcat-a\"]\n",
                 "'tcat-a' is listed twice"},
         Mistake{"missing_plate_file", "[target]\ndistance_m = 2\nplates = [\"./none.toml\"]\n",

@@ -37,6 +37,7 @@ struct GradedDesign {
   std::vector<double> delta_t_k{16.9, 1.93, 0.23};
   double distance_m = 2;                   ///< with that of the camera the shipped plates suit 2.6 mm a pixel
   std::optional<ViewedDisplay> display{};  ///< of hvs-2, which judges in place of hvs-1
+  double adaptive_percent = 0;             ///< half-width at which an adaptive schedule ends; 0: constant stimuli
 };
 
 /// What a plan of defaults shows with a camera of 50 Hz, and the frames that are chosen for it (with_frames()).

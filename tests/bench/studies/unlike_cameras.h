@@ -45,7 +45,13 @@ inline std::vector<GradedDesign> unlike_designs() {
   const SensorSpec defective = sensor([](SensorSpec& s) { s.defective_pixel_share = 0.001; });
   GradedDesign microscan = row("microscan", plain, plain, 3), microscan_12 = row("microscan, 12 phases", plain, plain);
   microscan.microscan = microscan_12.microscan = 2;
+  GradedDesign adaptive = row("equal, adaptive, 3 %", plain, plain, 6),
+               adaptive_noisy = row("NETD x 2, adaptive, 4 %", noisy, plain, 6);
+  for (GradedDesign* one : {&adaptive, &adaptive_noisy}) one->delta_t_k = {16.9, 0.23};
+  adaptive.adaptive_percent = 3, adaptive_noisy.adaptive_percent = 4;
   return {row("equal", plain, plain),
+          adaptive,
+          adaptive_noisy,
           row("blur 0.5 / 0.35", more, blurred),
           row("f/2 / f/1", slow, plain),
           row("column noise 70 mK / none", columns, plain),
@@ -98,6 +104,10 @@ inline std::vector<GradedResult> unlike_results(const GradedDesign& design, std:
   plan.target.phases = design.phases;
   plan.simulation.phases = 2;  // trials of the twin decide nothing here
   plan.simulation.accuracy = "normal";
+  if (design.adaptive_percent > 0) {
+    plan.schedule.kind = ScheduleKind::adaptive;
+    plan.schedule.half_width_percent = design.adaptive_percent;
+  }
   PlanParts parts = LoadedPlan::load(plan).value().parts();
   parts.sensor = design.twin;
   const LoadedPlan loaded = LoadedPlan::of(plan, std::move(parts)).value();
