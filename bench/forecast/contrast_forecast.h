@@ -17,10 +17,9 @@ namespace todbench {
 [[nodiscard]] std::vector<double> expected_contrast_slopes(const std::vector<ContrastPrediction>& contrasts);
 
 /// Returns the half-width of ln S75 that the scatter of a measured contrast makes alone, as AdaptiveSchedule takes it:
-/// at the set-up with which half of the runs have ended. `looks`: number of its
-/// measurements in each set-up, each of `contrast_frames`, or of a presentation's frames if presentations have
-/// contrasts of their own. The noise is that of the sensor's file: temporal noise over the frames, and its fixed
-/// pattern.
+/// at the set-up with which half of the runs have ended. `looks`: number of its measurements in each set-up, each of
+/// `contrast_frames`, or of a presentation's frames if presentations have contrasts of their own. The noise is that of
+/// the sensor's file: temporal noise over the frames, and its fixed pattern.
 [[nodiscard]] double contrast_half_width(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
                                          const std::vector<int>& looks, double slope);
 
