@@ -257,6 +257,16 @@ TEST(NoiseChange, FindsTwiceTheNoiseAndAFilterInASmallPicture) {
   EXPECT_GE(changes_found({.frames = 16}, {.frames = 16, .memory = 0.7}, 200).correlation, 198);
 }
 
+// The limits are 15 % and 0.2, the errors 1.4 % and 0.026.
+TEST(NoiseChange, FindsAFifthMoreNoiseAndACorrelationOfAThirdInALargePicture) {
+  const SmallAverage large{.frames = 16, .rows = 120, .columns = 120};
+  SmallAverage noisy = large, filtered = large;
+  noisy.noise_k *= 1.2;
+  filtered.memory = 0.33;
+  EXPECT_GE(changes_found(large, noisy, 30).noise, 29);
+  EXPECT_GE(changes_found(large, filtered, 30).correlation, 29);
+}
+
 TEST(NoiseChange, HasTheLimitsOfSixteenFramesOfALargePicture) {
   const std::vector<PictureNoise> large{{16.9, 0.07, 0.0}, {16.9, 0.07, 0.0}};
   EXPECT_EQ(noise_change(large)->limit, most_noise_change);
@@ -306,6 +316,15 @@ TEST(PictureResidue, HasFewFalseAlarmsOfAPictureThatRests) {
   }
   EXPECT_EQ(judged, 2000);
   EXPECT_LE(found, 20);
+}
+
+TEST(PictureResidue, FindsThreePerCentOfTheOldPicture) {
+  int found = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    const auto residue = residue_of({.share = 0.03}, seed);
+    found += residue && residue->share > residue->limit ? 1 : 0;
+  }
+  EXPECT_GE(found, 198);
 }
 
 TEST(PictureResidue, OfPicturesThatDoNotDifferIsNotKnown) {
