@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "tod/schedule/adaptive_schedule.h"
+
 namespace todbench {
 namespace {
 
@@ -77,8 +79,8 @@ std::map<double, ContrastError> contrast_errors(std::span<const ContrastMeasurem
     if (!one.references.empty()) by_contrast[one.set_delta_t_k].push_back(one);
   std::map<double, ContrastError> errors;
   for (const auto& [set_delta_t_k, own] : by_contrast) {
-    const auto error = contrast_error(own);
-    if (error && error->standard_error_k > 0) errors[set_delta_t_k] = *error;
+    if (const auto error = contrast_error(own); error && error->standard_error_k > 0)
+      errors[set_delta_t_k] = at_least_the_noise(*error);
   }
   return errors;
 }

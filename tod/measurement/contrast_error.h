@@ -27,7 +27,7 @@ struct ContrastMeasurement {
 /// them onto the same detectors. Empty with fewer than two set-ups and fewer than two places.
 [[nodiscard]] std::optional<ContrastError> contrast_error(std::span<const ContrastMeasurement> measurements);
 
-/// contrast_error() of each set contrast; without those that have no error or none that can be estimated.
+/// contrast_error() of each set contrast, at least that of the noise; without those that cannot be estimated.
 [[nodiscard]] std::map<double, ContrastError> contrast_errors(std::span<const ContrastMeasurement> measurements);
 
 /// Sets the standard errors of the contrasts of the points of a curve, if they can be estimated from `measurements`.

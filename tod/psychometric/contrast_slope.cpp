@@ -103,8 +103,9 @@ std::vector<ContrastScatter> contrast_scatter(const TodCurve& curve) {
     const TodPoint& point = curve.points[i];
     const double relative = point.delta_t_se_k / contrast_seen_k(point);
     const double shared = point.delta_t_shared_se_k / contrast_seen_k(point);
-    scatter.push_back({.se_ln_acuity = std::isfinite(relative) ? slopes[i] * relative : 0,
-                       .shared_se_ln_acuity = std::isfinite(shared) ? slopes[i] * shared : 0,
+    const double slope = std::max(measured_contrast_slope, slopes[i]);  // as in join_contrast_errors()
+    scatter.push_back({.se_ln_acuity = std::isfinite(relative) ? slope * relative : 0,
+                       .shared_se_ln_acuity = std::isfinite(shared) ? slope * shared : 0,
                        .degrees_of_freedom = freedom_of_contrast(point)});
   }
   return scatter;

@@ -45,7 +45,7 @@ struct ContrastScatter {
   double shared_se_ln_acuity = 0;              ///< part of it that the scatter over set-ups does not contain
   std::optional<double> degrees_of_freedom{};  ///< empty: not stated
 };
-/// Returns for each point the standard error of the contrast times contrast_slopes().
+/// Returns for each point the standard error of the contrast times its slope, at least measured_contrast_slope.
 [[nodiscard]] std::vector<ContrastScatter> contrast_scatter(const TodCurve& curve);
 
 /// Adds a standard uncertainty `u` of ln threshold, which the answers do not show, to the intervals of a fit, using

@@ -177,8 +177,7 @@ std::optional<TargetState> AdaptiveSchedule::next() {
 }
 
 void AdaptiveSchedule::observe_contrasts(const std::map<double, ContrastError>& errors) {
-  contrast_errors_.clear();
-  for (const auto& [contrast, error] : errors) contrast_errors_[contrast] = at_least_the_noise(error);
+  contrast_errors_ = errors;
 }
 
 void AdaptiveSchedule::observe(std::span<const Trial> trials) {
