@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <limits>
 
 #include "acquisition/base/distributions.h"
 #include "tod/psychometric/twin_shape.h"
@@ -51,12 +50,12 @@ std::optional<double> half_width(const PsychometricFit& fit) {
 }  // namespace
 
 ContrastError at_least_the_noise(ContrastError error) {
-  constexpr double tail = 0.025;
-  if (error.noise_k * distribution::quantile_above(tail, std::nullopt) <=
+  constexpr double tail = 0.025, noise_freedom = 1000;  // that of the pixels round the triangles
+  if (error.noise_k * distribution::quantile_above(tail, noise_freedom) <=
       error.standard_error_k * distribution::quantile_above(tail, error.degrees_of_freedom))
     return error;
   error.standard_error_k = error.noise_k;
-  error.degrees_of_freedom = std::numeric_limits<double>::infinity();
+  error.degrees_of_freedom = noise_freedom;
   return error;
 }
 
