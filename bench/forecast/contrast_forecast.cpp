@@ -17,7 +17,6 @@
 #include "tod/plate/test_pattern.h"
 #include "tod/psychometric/contrast_slope.h"
 #include "tod/registration/registration.h"
-#include "tod/schedule/adaptive_schedule.h"
 
 namespace todbench {
 namespace {
@@ -157,12 +156,10 @@ double contrast_variance_per_pixel(const TargetPlate& plate, double pixels_per_m
   return frame_contrast(plate, pixels_per_mm, min_size_px, {.pixel_k = 1}).variance;
 }
 
-std::vector<double> expected_contrast_slopes(const std::vector<ContrastPrediction>& contrasts) {
+std::vector<double> expected_contrast_effects(const std::vector<ContrastPrediction>& contrasts) {
   PlanPrediction expected;
   expected.contrasts = contrasts;
-  std::vector<double> slopes = contrast_slopes(expected_curve(expected));
-  for (double& slope : slopes) slope = std::max(measured_contrast_slope, std::isfinite(slope) ? slope : 1.0);
-  return slopes;
+  return contrast_effects(expected_curve(expected));
 }
 
 double contrast_half_width(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
@@ -175,7 +172,7 @@ double contrast_half_width(const Plan& plan, const ExperimentInputs& inputs, dou
 
 void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Plan& plan, const ExperimentInputs& inputs,
                            const std::vector<std::vector<int>>& looks) {
-  const std::vector<double> slopes = expected_contrast_slopes(contrasts);
+  const std::vector<double> slopes = expected_contrast_effects(contrasts);
   for (std::size_t i = 0; i < contrasts.size() && i < looks.size(); ++i) {
     ContrastPrediction& point = contrasts[i];
     join(point, scatter_of(plan, inputs, point.delta_t_k, looks[i]), slopes[i], !has_own_contrasts(plan));

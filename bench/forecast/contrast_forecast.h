@@ -14,17 +14,17 @@ namespace todbench {
 [[nodiscard]] double contrast_variance_per_pixel(const TargetPlate& plate, double pixels_per_mm, double min_size_px);
 
 /// Returns d ln S75 / d ln contrast at each contrast of a prediction, as join_contrast_errors() takes it from a curve.
-[[nodiscard]] std::vector<double> expected_contrast_slopes(const std::vector<ContrastPrediction>& contrasts);
+[[nodiscard]] std::vector<double> expected_contrast_effects(const std::vector<ContrastPrediction>& contrasts);
 
 /// Returns the half-width of ln S75 that the scatter of a measured contrast makes alone, as AdaptiveSchedule takes it:
-/// at the set-up with which half of the runs have ended. `looks`: number of its measurements in each set-up, each of
-/// `contrast_frames`, or of a presentation's frames if presentations have contrasts of their own. The noise is that of
-/// the sensor's file: temporal noise over the frames, and its fixed pattern.
+/// after the set-up in which half of the runs end. `looks`: how often the contrast is measured in each set-up. A
+/// measurement averages `contrast_frames`, or the frames of a presentation if presentations have contrasts of their
+/// own. The noise is that of the sensor's file: its fixed pattern, and its temporal noise averaged over these frames.
 [[nodiscard]] double contrast_half_width(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
                                          const std::vector<int>& looks, double slope);
 
 /// Adds the scatter of the measured contrast to the predictions of a plan with a camera, as join_contrast_errors()
-/// (tod/psychometric/contrast_slope.h) adds it to the curve. `looks`: those of contrast_half_width(), by contrast.
+/// (tod/psychometric/contrast_slope.h) adds it to the curve. `looks`: as in contrast_half_width(), for each contrast.
 void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Plan& plan, const ExperimentInputs& inputs,
                            const std::vector<std::vector<int>>& looks);
 

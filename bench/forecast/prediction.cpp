@@ -166,7 +166,7 @@ int most_presentations(const Plan& plan) {
 /// `of_contrast`, the half-width of ln S75 from the measured contrast.
 void adapt_binary(ContrastPrediction& point, const Plan& plan, const std::vector<TargetPlate>& plates,
                   double of_contrast) {
-  if (plan.schedule.kind != ScheduleKind::adaptive || !point.uncertainty_percent || !(point.trials > 0)) return;
+  if (!point.uncertainty_percent || !(point.trials > 0)) return;
   const double per_presentation = triangles_of(plates) / static_cast<double>(plates.size());
   const double asked = plan.schedule.half_width_percent / 100, constant = std::log1p(*point.uncertainty_percent / 100);
   const double of_answers = std::sqrt(std::max(0.0, asked * asked - of_contrast * of_contrast));
@@ -300,7 +300,7 @@ std::vector<std::vector<int>> adapt(std::vector<ContrastPrediction>& points, con
   if (plan.schedule.kind != ScheduleKind::adaptive || set_ups == 0) return looks;
   const bool joined = !plan.camera.id.empty();
   const std::vector<double> slopes =
-      joined ? expected_contrast_slopes(points) : std::vector<double>(points.size(), 0.0);
+      joined ? expected_contrast_effects(points) : std::vector<double>(points.size(), 0.0);
   if (chosen_answers(plan, inputs.sensor).kind != AnswerKind::graded) {
     for (std::size_t i = 0; i < points.size(); ++i)
       adapt_binary(points[i], plan, inputs.plates,

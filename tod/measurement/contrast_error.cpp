@@ -5,8 +5,6 @@
 #include <cmath>
 #include <map>
 
-#include "tod/schedule/adaptive_schedule.h"
-
 namespace todbench {
 namespace {
 

@@ -63,8 +63,6 @@ class Run {
         ended_by = asked_to ? Error{ErrorCode::interrupted, "stopped on request"} : shown.error();
         break;
       }
-      if (result_.contrasts.size() != contrasts_told_) schedule_.observe_contrasts(contrast_errors(result_.contrasts));
-      contrasts_told_ = result_.contrasts.size();
       schedule_.observe(std::span(result_.trials).subspan(before));
       if (listener_.on_progress) listener_.on_progress(static_cast<std::size_t>(presentation_), schedule_.planned());
     }
@@ -339,8 +337,10 @@ class Run {
                                             .judged_delta_t_k = seen_.contrast_k * seen_.judged->gain,
                                             .noise_k = seen_.noise_k,
                                             .scale = *seen_.judged});
-      if (settled && !seen_.references.empty())
+      if (settled && !seen_.references.empty()) {
         result_.contrasts.push_back({state.delta_t_k, seen_.contrast_k, seen_.references});
+        schedule_.observe_contrasts(contrast_errors(result_.contrasts));
+      }
     }
     current_set_up_ = set_up;
     current_contrast_ = state.delta_t_k;
@@ -447,7 +447,6 @@ class Run {
   std::map<SetUp, Registration> registered_;  ///< at shift 0
   std::optional<SetUp> current_set_up_;
   std::optional<double> current_contrast_;
-  std::size_t contrasts_told_ = 0;           ///< number of measured contrasts that the schedule knows
   Registration base_;                        ///< of the current set-up, at shift 0
   SeenContrast seen_;                        ///< of the current set-up and set-point
   double scale_px_per_mm_ = 0;               ///< of the first registration: one scale for the whole run

@@ -45,6 +45,16 @@ double slope_at(const std::vector<SlopePoint>& points, std::size_t i) {
 
 }  // namespace
 
+ContrastError at_least_the_noise(ContrastError error) {
+  constexpr double tail = 0.025, noise_freedom = 1000;  // that of the pixels round the triangles
+  if (error.noise_k * distribution::quantile_above(tail, noise_freedom) <=
+      error.standard_error_k * distribution::quantile_above(tail, error.degrees_of_freedom))
+    return error;
+  error.standard_error_k = error.noise_k;
+  error.degrees_of_freedom = noise_freedom;
+  return error;
+}
+
 void set_contrast_errors(TodCurve& curve, const std::map<double, ContrastError>& errors) {
   for (TodPoint& point : curve.points) {
     const auto error = errors.find(point.set_delta_t_k);
@@ -96,16 +106,22 @@ std::vector<double> contrast_slopes(const TodCurve& curve) {
   return slopes;
 }
 
+std::vector<double> contrast_effects(const TodCurve& curve) {
+  std::vector<double> effects = contrast_slopes(curve);
+  for (double& effect : effects)
+    effect = std::isfinite(effect) ? std::max(measured_contrast_slope, effect) : measured_contrast_slope;
+  return effects;
+}
+
 std::vector<ContrastScatter> contrast_scatter(const TodCurve& curve) {
-  const std::vector<double> slopes = contrast_slopes(curve);
+  const std::vector<double> effects = contrast_effects(curve);
   std::vector<ContrastScatter> scatter;
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     const TodPoint& point = curve.points[i];
     const double relative = point.delta_t_se_k / contrast_seen_k(point);
     const double shared = point.delta_t_shared_se_k / contrast_seen_k(point);
-    const double slope = std::max(measured_contrast_slope, slopes[i]);  // as in join_contrast_errors()
-    scatter.push_back({.se_ln_acuity = std::isfinite(relative) ? slope * relative : 0,
-                       .shared_se_ln_acuity = std::isfinite(shared) ? slope * shared : 0,
+    scatter.push_back({.se_ln_acuity = std::isfinite(relative) ? effects[i] * relative : 0,
+                       .shared_se_ln_acuity = std::isfinite(shared) ? effects[i] * shared : 0,
                        .degrees_of_freedom = freedom_of_contrast(point)});
   }
   return scatter;
@@ -127,13 +143,13 @@ void join_uncertainty(PsychometricFit& fit, double u, std::optional<double> degr
 }
 
 void join_contrast_errors(TodCurve& curve) {
-  const std::vector<double> slopes = contrast_slopes(curve);
+  const std::vector<double> effects = contrast_effects(curve);
   for (std::size_t i = 0; i < curve.points.size(); ++i) {
     TodPoint& point = curve.points[i];
     const auto se = contrast_se_k(point);
     const double seen = contrast_seen_k(point);
-    if (!se || !(seen > 0) || !std::isfinite(slopes[i])) continue;
-    point.fit.contrast_u = std::max(measured_contrast_slope, slopes[i]) * *se / seen;
+    if (!se || !(seen > 0)) continue;
+    point.fit.contrast_u = effects[i] * *se / seen;
     join_uncertainty(point.fit, point.fit.contrast_u, freedom_of_contrast(point));
   }
 }

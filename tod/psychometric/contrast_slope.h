@@ -18,6 +18,10 @@ struct ContrastError {
   double noise_k = 0;  ///< standard error from the noise of the pixels alone; 0: not known
 };
 
+/// Returns the error of a contrast that reports state and schedules decide by: the one with the longer 95 % interval of
+/// the given error and that of the noise of the pixels. The scatter over a few set-ups may be small by chance.
+[[nodiscard]] ContrastError at_least_the_noise(ContrastError error);
+
 /// Sets the standard errors of the contrasts of the points of a curve, by set contrast. A point without one keeps its
 /// own.
 void set_contrast_errors(TodCurve& curve, const std::map<double, ContrastError>& errors);
@@ -39,21 +43,24 @@ void set_contrast_errors(TodCurve& curve, const std::map<double, ContrastError>&
 /// it is 1: acuity in proportion to the contrast.
 [[nodiscard]] std::vector<double> contrast_slopes(const TodCurve& curve);
 
+/// d ln S75 / d ln contrast at least, by measurement.
+inline constexpr double measured_contrast_slope = 1.14;
+
+/// Returns for each point the change of ln S75 with ln contrast: contrast_slopes(), at least measured_contrast_slope.
+[[nodiscard]] std::vector<double> contrast_effects(const TodCurve& curve);
+
 /// Uncertainty of the acuity from the scatter of the measurements of a contrast.
 struct ContrastScatter {
   double se_ln_acuity = 0;                     ///< 0 if the scatter is not known
   double shared_se_ln_acuity = 0;              ///< part of it that the scatter over set-ups does not contain
   std::optional<double> degrees_of_freedom{};  ///< empty: not stated
 };
-/// Returns for each point the standard error of the contrast times its slope, at least measured_contrast_slope.
+/// Returns for each point the standard error of the contrast times contrast_effects().
 [[nodiscard]] std::vector<ContrastScatter> contrast_scatter(const TodCurve& curve);
 
 /// Adds a standard uncertainty `u` of ln threshold, which the answers do not show, to the intervals of a fit, using
 /// Student's t with these degrees of freedom.
 void join_uncertainty(PsychometricFit& fit, double u, std::optional<double> degrees_of_freedom);
-
-/// d ln S75 / d ln contrast at least, by measurement.
-inline constexpr double measured_contrast_slope = 1.14;
 
 /// Adds the scatter of the effective contrast as an uncertainty of S75. The answers were scored with the effective
 /// contrast, and the size is stated at that contrast. Let w be the share of the observer's own noise, and d ln S75 / d

@@ -49,16 +49,6 @@ std::optional<double> half_width(const PsychometricFit& fit) {
 
 }  // namespace
 
-ContrastError at_least_the_noise(ContrastError error) {
-  constexpr double tail = 0.025, noise_freedom = 1000;  // that of the pixels round the triangles
-  if (error.noise_k * distribution::quantile_above(tail, noise_freedom) <=
-      error.standard_error_k * distribution::quantile_above(tail, error.degrees_of_freedom))
-    return error;
-  error.standard_error_k = error.noise_k;
-  error.degrees_of_freedom = noise_freedom;
-  return error;
-}
-
 double visit_seconds(const ConstantStimuliOptions& stimuli, bool other_plate, bool other_mounting, int contrasts) {
   const double* cost = stimuli.change_cost_s;
   return (other_plate ? cost[0] : 0) + (other_mounting ? cost[1] : 0) +

@@ -24,10 +24,6 @@ inline constexpr int least_adaptive_presentations = 8;
 [[nodiscard]] double visit_seconds(const ConstantStimuliOptions& stimuli, bool other_plate, bool other_mounting,
                                    int contrasts);
 
-/// Returns the error of a contrast that reports state and schedules decide by: the one with the longer 95 % interval of
-/// the given error and that of the noise of the pixels. The scatter over a few set-ups may be small by chance.
-[[nodiscard]] ContrastError at_least_the_noise(ContrastError error);
-
 /// Options of AdaptiveSchedule.
 struct AdaptiveOptions {
   /// Plates, mountings, contrasts, pixel and costs of changes. `phases`: presentations per visit, which is one contrast
