@@ -12,15 +12,14 @@ namespace {
 /// `lanes` columns of sum_b factor_b row_b, b = 0..rows-1 in this order.
 TODBENCH_MULTIVERSION
 void sum_rows(const double* matrix, std::size_t stride, const double* factors, std::size_t rows, double* sum) {
-  Eight s0 = {}, s1 = {};
+  constexpr std::size_t pairs = lanes / 2;
+  Two sums[pairs] = {};
   for (std::size_t b = 0; b < rows; ++b) {
-    const auto* row = reinterpret_cast<const EightInMemory*>(matrix + b * stride);
-    s0 += factors[b] * row[0];
-    s1 += factors[b] * row[1];
+    const auto* row = reinterpret_cast<const TwoInMemory*>(matrix + b * stride);
+    for (std::size_t l = 0; l < pairs; ++l) sums[l] += factors[b] * row[l];
   }
-  auto* out = reinterpret_cast<EightInMemory*>(sum);
-  out[0] = s0;
-  out[1] = s1;
+  auto* out = reinterpret_cast<TwoInMemory*>(sum);
+  for (std::size_t l = 0; l < pairs; ++l) out[l] = sums[l];
 }
 
 }  // namespace

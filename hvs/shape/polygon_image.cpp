@@ -28,39 +28,40 @@ int wrapped(int index, int n) {
 /// Rows read together: as many streams as the memory system can follow.
 constexpr std::size_t rows_at_once = 4;
 
-/// Adds factor_b row_b, b = 0..rows_at_once-1 in this order, to `columns` (whole lanes) sums.
-TODBENCH_MULTIVERSION
-void add_four_rows(const double* re, const double* im, std::size_t stride, const Complex* factors, std::size_t columns,
-                   double* sum_re, double* sum_im) {
-  for (std::size_t k = 0; k < columns; k += 8) {
-    auto* out_re = reinterpret_cast<EightInMemory*>(sum_re + k);
-    auto* out_im = reinterpret_cast<EightInMemory*>(sum_im + k);
-    Eight r = *out_re, i = *out_im;
-    for (std::size_t b = 0; b < rows_at_once; ++b) {
+/// Adds factor_b row_b, b = 0..`rows`-1 in this order, to `columns` (whole lanes) sums.
+template <std::size_t rows>
+[[gnu::always_inline]] inline void add_rows(const double* re, const double* im, std::size_t stride,
+                                            const Complex* factors, std::size_t columns, double* sum_re,
+                                            double* sum_im) {
+  constexpr std::size_t pairs = 4;
+  for (std::size_t k = 0; k < columns; k += 2 * pairs) {
+    auto* out_re = reinterpret_cast<TwoInMemory*>(sum_re + k);
+    auto* out_im = reinterpret_cast<TwoInMemory*>(sum_im + k);
+    Two r[pairs], i[pairs];
+    for (std::size_t l = 0; l < pairs; ++l) r[l] = out_re[l], i[l] = out_im[l];
+    for (std::size_t b = 0; b < rows; ++b) {
       const double fr = factors[b].real();
       const double fi = factors[b].imag();
-      const auto row_re = *reinterpret_cast<const EightInMemory*>(re + b * stride + k);
-      const auto row_im = *reinterpret_cast<const EightInMemory*>(im + b * stride + k);
-      r += row_re * fr - row_im * fi;
-      i += row_re * fi + row_im * fr;
+      const auto* row_re = reinterpret_cast<const TwoInMemory*>(re + b * stride + k);
+      const auto* row_im = reinterpret_cast<const TwoInMemory*>(im + b * stride + k);
+      for (std::size_t l = 0; l < pairs; ++l) {
+        r[l] += row_re[l] * fr - row_im[l] * fi;
+        i[l] += row_re[l] * fi + row_im[l] * fr;
+      }
     }
-    *out_re = r;
-    *out_im = i;
+    for (std::size_t l = 0; l < pairs; ++l) out_re[l] = r[l], out_im[l] = i[l];
   }
 }
 
 TODBENCH_MULTIVERSION
+void add_four_rows(const double* re, const double* im, std::size_t stride, const Complex* factors, std::size_t columns,
+                   double* sum_re, double* sum_im) {
+  add_rows<rows_at_once>(re, im, stride, factors, columns, sum_re, sum_im);
+}
+
+TODBENCH_MULTIVERSION
 void add_row(const double* re, const double* im, Complex factor, std::size_t columns, double* sum_re, double* sum_im) {
-  const double fr = factor.real();
-  const double fi = factor.imag();
-  for (std::size_t k = 0; k < columns; k += 8) {
-    auto* out_re = reinterpret_cast<EightInMemory*>(sum_re + k);
-    auto* out_im = reinterpret_cast<EightInMemory*>(sum_im + k);
-    const auto row_re = *reinterpret_cast<const EightInMemory*>(re + k);
-    const auto row_im = *reinterpret_cast<const EightInMemory*>(im + k);
-    *out_re += row_re * fr - row_im * fi;
-    *out_im += row_re * fi + row_im * fr;
-  }
+  add_rows<1>(re, im, 0, &factor, columns, sum_re, sum_im);
 }
 
 /// values * factors, number by number.
