@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Response of the samples of a sensor to light within one cell of their grid.
+// Responses of a sensor's samples to light within one cell of the sampling grid.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace todbench {
 
-inline constexpr int cell_reach = 6;  ///< distance in samples beyond a cell up to which its coefficients have an effect
+inline constexpr int cell_reach = 6;  ///< a cell affects samples up to this distance beyond it, in samples
 inline constexpr int response_side = 2 * cell_reach + 1;
 inline constexpr int largest_degree = 24;
 
-/// Orthonormal Legendre polynomials on [-1/2, 1/2] at one place: p[a], and their integrals q[a] from -1/2. For a >= 1
-/// the integrals vanish at both ends.
+/// Values of the orthonormal Legendre polynomials on [-1/2, 1/2] at one place: p[a], and their integrals q[a] from
+/// -1/2. For a >= 1 the integrals vanish at both ends.
 struct LegendreValues {
   std::array<double, largest_degree + 2> p{}, q{};
 };
@@ -27,10 +27,11 @@ struct LegendreValues {
 /// Returns the pairs (a, b) with 1 <= a + b <= degree, sorted by a. All tables use this order.
 [[nodiscard]] std::vector<std::pair<int, int>> legendre_pairs(int degree);
 
-/// Image formation with frequencies in cycles per sample. Optics are a table over the radius, interpolated linearly.
+/// Transfer functions of image formation, with frequencies in cycles per sample. The optics are tabulated over the
+/// radius and interpolated linearly.
 class SampleTransfer {
  public:
-  /// The band is the highest one that the planned effects pass, at most 16 cycles per pitch.
+  /// The band ends at the highest frequency that the planned effects pass, at most 16 cycles per pitch.
   SampleTransfer(const ChainScope& scope, const Accuracy& accuracy);
   [[nodiscard]] double band_per_sample() const { return band_ / per_pitch_; }
   /// Returns whether every effect in the chain is symmetric about both axes.
@@ -47,15 +48,15 @@ class SampleTransfer {
 
  private:
   double per_pitch_, band_;
-  double per_aspect_squared_;  ///< square of the pitch along x over that along y
+  double per_aspect_squared_;  ///< square of (pitch along x / pitch along y)
   FootprintMtf footprint_;
   std::vector<TransferFunction> others_;
   std::vector<double> optics_;
   int nodes_ = 0;  ///< nodes of the table of optics
 };
 
-/// Returns the responses of the samples round a cell to the polynomials of legendre_pairs() over that cell. One row for
-/// each polynomial: response_side squared values, row by row.
+/// Returns the responses of the samples around a cell to the polynomials of legendre_pairs() over that cell. The result
+/// has one row for each polynomial, with response_side squared values, row by row.
 [[nodiscard]] cv::Mat1f coefficient_responses(const SampleTransfer& transfer, int degree);
 /// Returns the response to a unit cell, summed over all aliases, at the frequencies of a periodic grid of samples.
 [[nodiscard]] cv::Mat2d unit_cell_response(const SampleTransfer& transfer, cv::Size size);

@@ -8,8 +8,8 @@
 
 namespace todbench {
 
-/// Contrast that a first-order detector has reached after steps. Image formation is linear in the contrast, so the
-/// picture at the reached contrast is the picture of the step. All rows observe a step at the same moment.
+/// Contrast that a first-order detector has reached after steps. Image formation is linear in the contrast, so a
+/// picture during a step equals a steady picture at the reached contrast. All rows observe a step at the same moment.
 class ContrastSteps {
  public:
   /// Constant contrast `delta_t_k`, without a step.
@@ -17,13 +17,13 @@ class ContrastSteps {
 
   /// Adds a step to `delta_t_k`. Times must increase from call to call.
   void step(double time_s, double delta_t_k);
-  /// Returns the reached contrast: the mean over the exposure that ends at `end_s` of a contrast that approaches each
-  /// step with the time constant T, as exp(-t / T). Returns the set contrast bit for bit if the detector has neither
-  /// time constant nor exposure, or long after the last step. Steps later than `end_s` have no effect yet.
+  /// Returns the reached contrast, averaged over the exposure that ends at `end_s`. The contrast approaches each step
+  /// with the time constant T, as exp(-t / T). Returns the set contrast bit for bit if the detector has neither time
+  /// constant nor exposure, or long after the last step. Steps later than `end_s` have no effect yet.
   [[nodiscard]] double seen_k(double end_s, const SensorSpec& spec) const;
   /// Returns the contrast after the last step.
   [[nodiscard]] double last_k() const { return steps_.empty() ? settled_k_ : steps_.back().delta_t_k; }
-  /// Returns whether no step affects a detector at `time_s` any more.
+  /// Returns whether a detector has settled at `time_s` after all steps.
   [[nodiscard]] bool over(double time_s, const SensorSpec& spec) const;
 
  private:

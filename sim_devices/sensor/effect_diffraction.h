@@ -16,8 +16,8 @@ namespace todbench {
 struct WavelengthNode {
   double wavelength_um = 0, weight = 0;
 };
-/// Returns the Gauss-Legendre nodes over the band, weighted with dL/dT of a black body (Planck, power units).
-/// `count` 1..64; 1 is the weighted mean.
+/// Returns the Gauss-Legendre nodes over the band, weighted with dL/dT of a black body (Planck, power units). `count`
+/// is 1 to 64; for 1 the node is the weighted mean wavelength.
 [[nodiscard]] std::vector<WavelengthNode> wavelength_nodes(const SensorSpec& spec, int count);
 
 }  // namespace todbench

@@ -14,13 +14,13 @@ namespace todbench {
 /// sample: integrals over |f| <= 1/2, normalised to sum 1.
 [[nodiscard]] std::vector<double> taps_of(const std::function<double(double)>& response);
 
-/// Returns the response of edge filter and display beyond the sample-and-hold that observers assume: exp(-2 pi^2
-/// sigma^2 f^2) times 1 + 4 b sin^2(pi f) for a boost of b, times sinc(f) for bilinear interpolation.
+/// Returns the response of edge filter and display, without the sample-and-hold that observers already assume: exp(-2
+/// pi^2 sigma^2 f^2) times 1 + 4 b sin^2(pi f) for a boost of b, times sinc(f) for bilinear interpolation.
 [[nodiscard]] double display_response(const SensorSpec& spec, double f_per_sample);
-/// Returns whether the display differs from sample-and-hold, or if the camera boosts edges.
+/// Returns whether the display differs from sample-and-hold, or the camera boosts edges.
 [[nodiscard]] bool has_display(const SensorSpec& spec);
 
-/// Returns the standard deviation behind the display of white noise with standard deviation 1.
+/// Returns the standard deviation, behind the display, of white noise that has standard deviation 1 in front of it.
 [[nodiscard]] double display_noise_gain(const SensorSpec& spec);
 
 /// Filters rows and columns with the taps. The picture is mirrored at its edges, so pixels closer to an edge than half

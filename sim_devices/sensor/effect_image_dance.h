@@ -15,8 +15,8 @@ namespace todbench {
 /// correlation exp(-t / tau_c), with tau_c = `turbulence_correlation_ms`, and are averaged over exposure and time
 /// constant. The rest of the variance is blur within the picture. Returns 0 for the long exposure.
 [[nodiscard]] double dance_share(const SensorSpec& spec);
-/// Returns the weight of the tilt that is removed from the long exposure: 1 in the near field, D >= sqrt(lambda L), 1/2
-/// beyond (Fried 1966).
+/// Returns the weight of the tilt that is removed from the long exposure: 1 in the near field (D >= sqrt(lambda L)),
+/// otherwise 1/2 (Fried 1966).
 [[nodiscard]] double dance_weight(const SensorSpec& spec);
 /// Returns the cut-off frequency of the lens in cycles per pitch, at the wavelength of the turbulent path.
 [[nodiscard]] double dance_cut_off(const SensorSpec& spec);
@@ -29,13 +29,13 @@ namespace todbench {
 
 /// Returns whether this sensor has image dance.
 [[nodiscard]] bool lets_dance(const SensorSpec& spec);
-/// Returns the bound on the change of ln S75 by the detector's temporal average over the dance; `instant` is the same
-/// sensor without that average. The bound is 12 / S^2 times the variance that is blur in one sensor and dance in the
-/// other.
+/// Returns the bound on the change of ln S75 that a detector causes by averaging the dance over time. `instant` is the
+/// same sensor without this average. The bound is 12 / S^2 times the variance that the average turns from dance into
+/// blur.
 [[nodiscard]] double averaged_dance_bound(const SensorSpec& spec, const SensorSpec& instant, double s75_pitch);
 
-/// Displacements of exposures in pitches of each axis, first-order autoregressive. Correlations below 1 % are cut off,
-/// so that the work for each exposure is bounded. Immutable.
+/// Displacements of the exposures by image dance, in pitches of each axis: a first-order autoregressive process.
+/// Correlations below 1 % are cut off, so that the work for each exposure is bounded. Immutable.
 class ImageDance {
  public:
   /// Precondition: `spec` is as_planned().

@@ -43,7 +43,7 @@ enum class Effect { TODBENCH_EFFECTS(TODBENCH_EFFECT_NAME) };
 inline constexpr std::array all_effects{TODBENCH_EFFECTS(TODBENCH_EFFECT_NAME)};
 #undef TODBENCH_EFFECT_NAME
 
-/// Returns the name in plans, options and files, equal to that of the enumerator.
+/// Returns the name in plans, options and files, which equals the name of the enumerator.
 [[nodiscard]] std::string_view to_string(Effect effect);
 /// Returns the effect with this name; empty if there is none.
 [[nodiscard]] std::optional<Effect> effect_from(std::string_view name);

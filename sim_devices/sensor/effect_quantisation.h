@@ -15,12 +15,12 @@ namespace todbench {
 /// Returns whether a count is larger than one standard deviation of the noise. If not, rounding errors are noise of
 /// variance 1/12, to 3e-9 of a count; otherwise they depend on the signal.
 [[nodiscard]] bool rounds_coarsely(const SensorSpec& spec);
-/// Returns whether the surround or a target of this contrast lies within six standard deviations of the noise of the
-/// lowest or highest count.
+/// Returns whether the surround or a target of this contrast lies less than six standard deviations of the noise away
+/// from the lowest or highest count.
 [[nodiscard]] bool reaches_an_end(const SensorSpec& spec, double delta_t_k, double background_k);
 
 /// Rounds kelvin above the surround to the counts of a sensor, halves upwards. The limits between counts do not depend
-/// on the position of the surround within its count. A value; any thread.
+/// on the position of the surround within its count. Immutable; any thread.
 class Quantiser {
  public:
   Quantiser(const SensorSpec& spec, double background_k)
@@ -34,7 +34,7 @@ class Quantiser {
   [[nodiscard]] std::uint16_t count(float kelvin) const {
     return static_cast<std::uint16_t>(static_cast<int>(std::clamp(level(kelvin), 0.0, full_scale_)));
   }
-  /// Returns the temperature of the unclipped count above the surround.
+  /// Returns the temperature of the unclipped count, in kelvin above the surround.
   [[nodiscard]] float rounded(float kelvin) const {
     return static_cast<float>((std::floor(level(kelvin)) - background_) * step_k_);
   }
@@ -49,7 +49,7 @@ class Quantiser {
   [[nodiscard]] Reading reading(double kelvin, double sd_k) const;
 
  private:
-  /// The whole part is the count.
+  /// Returns the unrounded level, whose whole part is the count.
   [[nodiscard]] double level(float kelvin) const { return half_up_ + static_cast<double>(kelvin) * per_kelvin_; }
 
   double step_k_, per_kelvin_, background_, half_up_, full_scale_;

@@ -8,17 +8,17 @@
 
 namespace todbench {
 
-/// Returns the motion of the target from one row to the next, v t, in pitches. The middle row samples at the time of
-/// the picture.
+/// Returns the distance v t that the target moves from one row to the next, in pitches. The middle row samples at the
+/// time of the picture.
 [[nodiscard]] cv::Point2d readout_slope(const SensorSpec& spec, SceneMotion motion);
 
-/// Returns the place at which a point appears with sequential readout, if it appears at `place` when all rows sample
-/// with `middle_row`: a shear along the rows and a stretch across them. In pitches or samples. A slope of 0 returns the
-/// place bit for bit.
+/// Returns the place at which sequential readout shows a point. `place` is its place if all rows sample together with
+/// `middle_row`. The change is a shear along the rows and a stretch across them. In pitches or samples. A slope of 0
+/// returns the place bit for bit.
 [[nodiscard]] cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row);
 
-/// Returns the motion of the target between the two fields of an interlaced frame, in pitches. The even rows of
-/// detectors are the first field. 0 if the frame is progressive or the target does not move.
+/// Returns the distance that the target moves between the two fields of an interlaced frame, in pitches. The even rows
+/// of detectors are the first field. 0 if the frame is progressive or the target does not move.
 [[nodiscard]] cv::Point2d way_between_fields(const SensorSpec& spec, SceneMotion motion);
 
 /// Copies the odd rows of detectors of `later` into `picture`. Row 0 of the samples belongs to an even row.

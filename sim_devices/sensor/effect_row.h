@@ -48,7 +48,7 @@ struct Optics {
 struct Footprint {
   double (*factor)(double f_per_pitch, const SensorSpec& spec, PitchAxis axis);
 };
-/// Any other filter of the continuous image; an empty function: none.
+/// Any other filter of the continuous image. An empty function means that there is no filter.
 struct Transfer {
   TransferFunction (*factor)(const ChainScope& scope);
 };
@@ -73,7 +73,8 @@ enum class Recurrence {
   every_exposure,  ///< new random numbers in each exposure
   fixed            ///< the same in every frame
 };
-/// Adds noise to a picture of samples, multiplied by `weight` (that of one exposure in an average over exposures).
+/// Adds noise to a picture of samples, multiplied by `weight` (the weight of one exposure in an average over
+/// exposures).
 struct Noise {
   Colour colour;
   Recurrence recurrence;
@@ -96,7 +97,7 @@ struct Spread {
   double period = 0;      ///< added to the period, so that tails do not wrap round
   double window = 0;      ///< added round a window; shapes inside it are computed exactly
   double variance = 0;    ///< in pitches squared, for the axis with the larger variance
-  double far = 0;         ///< the parts of a plane more than r pitches away add far r^(-5/3)
+  double far = 0;         ///< the parts of a plane more than r pitches away contribute far r^(-5/3)
   double halo_share = 0;  ///< share of the light that is spread over `halo_reach`
   double halo_reach = 0;  ///< added to the period, and round a frame
 };
@@ -108,8 +109,8 @@ enum class SharedBy { detector, row, column };
 struct NoiseScope {
   const SensorSpec& spec;
   double contrast_k2 = 1;
-  /// Ratio of variances of the differences between templates: numbers shared by these samples over white noise of the
-  /// same size.
+  /// Returns the variance of the differences between templates for random numbers that these samples share, divided by
+  /// the variance for white noise of the same size.
   std::function<double(SharedBy)> variance_ratio;
 };
 
@@ -122,7 +123,7 @@ struct ExpectedScene {
   double noise_exponent = 0;                                ///< d ln S75 / d ln q, margin included
   std::array<double, all_effects.size()> noise_variance{};  ///< by effect, in units of the contrast squared
   double total_variance = 0;                                ///< noise of the observer included
-  /// Returns the change of ln S75 without this effect, from the ratio of discriminabilities.
+  /// Returns the change of ln S75 if this effect is left out, from the ratio of discriminabilities.
   std::function<double(Effect without)> discriminability_change;
 
   [[nodiscard]] double variance_of(Effect effect) const { return noise_variance[static_cast<std::size_t>(effect)]; }
@@ -132,7 +133,7 @@ struct ExpectedScene {
 
 /// Permission for the planner to skip an effect that has a bound.
 enum class WhenBounded { may_be_skipped, simulated };
-/// Response of the effect to a picture turned by a quarter: the same, or different.
+/// Dependence of the effect on direction: it changes a picture turned by a quarter in the same way, or differently.
 enum class AxisDirections { alike, different };
 
 /// Row of the table. A member at its default means that the effect does not use it.

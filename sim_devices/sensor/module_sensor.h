@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Program of the user in place of the sensor: it receives a scene and returns a frame.
+// User's program in place of the sensor. The program receives a scene and returns a frame.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ inline constexpr int scene_samples_per_pitch = 4;
 /// (0, 0) is in the corner of detector (0, 0).
 [[nodiscard]] cv::Mat1f scene_picture_k(const PlateScene& scene, const SensorSpec& spec);
 
-/// The program of a sensor. It starts with the first picture. One thread at a time.
+/// Runs the program of a sensor. The first picture starts it. One thread at a time.
 class ModuleSensor {
  public:
   using OnLine = std::function<void(std::string_view line)>;
@@ -44,7 +44,8 @@ class ModuleSensor {
 
   /// Returns frame `index` of a scene_picture_k(), in kelvin above the surround. Errors: module_error().
   [[nodiscard]] Result<cv::Mat1f> picture(const cv::Mat1f& scene_k, std::uint64_t index);
-  /// Returns frame `index` of a scene, in whole counts. Errors: also `invalid_input` (the scene moves).
+  /// Returns frame `index` of a scene, in whole counts. Errors: those of picture(), and `invalid_input` (the scene
+  /// moves).
   [[nodiscard]] Result<cv::Mat1w> expose(const PlateScene& scene, std::uint64_t index);
 
  private:

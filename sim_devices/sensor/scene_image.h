@@ -23,7 +23,8 @@ namespace todbench {
 /// crosses. The means are filtered with the response to a unit cell, including all frequencies that sampling folds. The
 /// remainder has mean 0 and is expanded in Legendre polynomials over the cell, with exact coefficients (Gauss and
 /// Green). Each polynomial has its own response, which falls as r^-4 and is kept for 6 samples. The degree follows from
-/// the band: the result equals ImageChain to 3e-5 of a contrast (test SceneImager.EqualsTheImageOfThePolygonAlone).
+/// the band: the result agrees with ImageChain to 3e-5 of a contrast (test
+/// SceneImager.EqualsTheImageOfThePolygonAlone).
 ///
 /// For an interlaced sensor, each field shows a moving scene at the time of the field (effect_readout.h).
 ///
@@ -36,10 +37,11 @@ class SceneImager {
   SceneImager(SensorSpec spec, SensorPlan plan, Accuracy accuracy, SceneMotion motion = {});
   ~SceneImager();
 
-  /// Returns the edges in samples, x right, y down; sample (i, j) is centred at (i, j).
+  /// Returns the image of the edges. Edges are in samples, x right, y down; sample (i, j) is centred at (i, j).
   [[nodiscard]] cv::Mat1d image(std::span<const StepEdge> edges, cv::Size size) const;
 
-  /// Returns the scene itself: its mean over every cell of the grid. Parts outside the frame are ignored.
+  /// Returns the scene without image formation: its mean over every cell of the grid. Parts outside the frame are
+  /// ignored.
   [[nodiscard]] static cv::Mat1d means(std::span<const StepEdge> edges, cv::Size size);
 
   /// Returns the image of a picture instead of edges. Each element is a square with a side of `pixel_samples` (at most

@@ -16,8 +16,8 @@
 
 namespace todbench {
 
-/// Immutable except for internal caches; thread-safe. The same (scene, index) gives the same frame on every machine and
-/// thread.
+/// Simulated sensor. Immutable except for internal caches; thread-safe. The same (scene, index) gives the same frame on
+/// every machine and thread.
 class SensorModel {
  public:
   /// Precondition: validate(spec) succeeds.

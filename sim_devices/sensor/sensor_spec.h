@@ -70,7 +70,8 @@ struct SensorSpec {
   double kelvin_per_count = 0.01;  ///< linear temperature output
   double offset_k = 250;           ///< temperature of count 0
   double frame_rate_hz = 50;
-  /// Programs of the user behind the sensor, from picture to picture. SensorModel and estimates do not run them.
+  /// User's programs behind the sensor; each receives a picture and returns a picture. SensorModel and estimates do not
+  /// run them.
   std::vector<ModulePlan> modules{};
   double scene_temperature_k = 300;  ///< temperature of the surround; sets the spectral weighting dL/dT
 

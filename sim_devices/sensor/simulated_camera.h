@@ -19,12 +19,12 @@ class SceneHolder {
  public:
   explicit SceneHolder(PlateScene scene);
   [[nodiscard]] std::shared_ptr<const PlateScene> scene() const;
-  /// Sets a scene that counts as settled for any detector.
+  /// Sets a scene to which every detector counts as settled.
   void set(PlateScene scene);
   /// Steps the contrast between the last frame and the next, at moments spread evenly over the frame period.
   void step_to(double delta_t_k);
   /// Returns the scene at a time of the camera's clock, and makes this the present time. During a run the plate is in
-  /// motion. After a step the contrast is the one that the detector has reached.
+  /// motion. After a step the scene has the contrast that the detector has reached.
   [[nodiscard]] PlateScene scene_at(double time_s, const SensorSpec& spec);
   /// Starts a run along x from the present place of the plate; the next set() ends it.
   PlateRun run_along_x(double to_mm, double speed_mm_s);
@@ -46,7 +46,7 @@ struct SimulatedSourceOptions {
 };
 
 /// Returns a camera without delay: frame k is expose(present scene, k) of the model or of the program in place of the
-/// sensor. `serial` distinguishes twins.
+/// sensor. `serial` distinguishes cameras with the same sensor.
 [[nodiscard]] std::unique_ptr<FrameSource> simulated_source(std::shared_ptr<const SensorModel> model,
                                                             std::shared_ptr<SceneHolder> scene, std::string serial,
                                                             const SimulatedSourceOptions& options = {});

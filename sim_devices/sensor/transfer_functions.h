@@ -38,7 +38,7 @@ class FootprintMtf {
 /// Returns the transfer functions of the planned rows of stage::Transfer that act in this scene.
 [[nodiscard]] std::vector<TransferFunction> other_transfers(const ChainScope& scope);
 
-/// Returns the transfer function of all of image formation. Sequential readout is not included, because it moves
+/// Returns the transfer function of the whole image formation. Sequential readout is not included, because it moves
 /// samples.
 [[nodiscard]] TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths,
                                                SceneMotion motion = {});
@@ -48,11 +48,11 @@ class FootprintMtf {
 [[nodiscard]] TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& scope);
 
 /// Returns the highest relevant frequency along either axis, in cycles per pitch: the cut-off of the optics, or the
-/// frequency at which they have reduced the signal to the tolerance. Without either the spectrum of a sharp shape is
-/// unlimited; a limit of 16 cycles per pitch leaves an error near 1/(pi^2 16) at edges.
+/// frequency at which they have reduced the signal to the tolerance. If no planned effect limits it, the spectrum of a
+/// sharp shape is unlimited. The limit of 16 cycles per pitch then leaves an error near 1/(pi^2 16) at edges.
 [[nodiscard]] double highest_frequency(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy);
 
-/// Returns the motion of the target from one row of samples to the next, in pitches: the sum over the rows of
+/// Returns the distance that the target moves from one row to the next, in pitches: the sum over the rows of
 /// stage::Readout.
 [[nodiscard]] cv::Point2d readout_slope_of(const ChainScope& scope);
 
