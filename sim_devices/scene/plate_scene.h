@@ -18,7 +18,7 @@ struct PlateScene {
   cv::Point2d shift_mm{0, 0};        ///< shift of the plate in its own plane
   cv::Point2d centre_px{0.3, -0.2};  ///< middle of the plate at shift 0, from the middle of the picture
   double rotation_deg = 0;           ///< rotation of the plate about the line of sight, clockwise in the picture
-  SceneMotion motion{};              ///< motion of the whole plate; smears if the sensor has a time constant
+  SceneMotion motion{};              ///< motion of the whole plate; a time constant or an exposure smears its picture
 };
 
 /// Returns the position in pixels (column, row; pixel centres are integers) of a place on the plate. `sample_mrad`:
