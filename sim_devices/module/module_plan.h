@@ -46,7 +46,7 @@ struct ModuleRanges {
 };
 inline constexpr ModuleRanges module_ranges{};
 
-/// Number of the sensor for the header.
+/// Property of the sensor for the header.
 struct SensorFact {
   std::string name;
   std::variant<double, std::int64_t, std::uint64_t> value;
@@ -54,7 +54,8 @@ struct SensorFact {
 /// Returns the options of the process. The header states place, parameters and, if given, facts of the sensor.
 [[nodiscard]] ModuleStageOptions stage_options(const ModulePlan& plan, std::span<const SensorFact> sensor = {});
 
-/// Returns the error of a module as an error of the run that differs from the loss of the camera.
+/// Returns the error of a module as an error of the run: `internal` if it was, otherwise `integrity`, so that it is not
+/// mistaken for the loss of the camera.
 [[nodiscard]] Error module_error(const ModulePlan& plan, const Error& error);
 
 /// Facts about a module at the start of a run, for the record.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Process of the user, in any language, as a stage of the chain.
+// User's process, written in any language, as a stage of the chain.
 #pragma once
 
 #include <sys/types.h>
@@ -20,7 +20,7 @@ namespace todbench {
 
 /// Access of a module to other computers, and to this one over its network.
 enum class ModuleNetwork {
-  cut,  ///< own network and queues, no other sockets, by bubblewrap; as `ours` if that cannot run
+  cut,  ///< own network and queues, no other sockets (bubblewrap); as `ours` if bubblewrap cannot run
   ours,
 };
 /// Returns whether a network can be cut here: bubblewrap is installed and works. Tested once.
