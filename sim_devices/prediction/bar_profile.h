@@ -10,12 +10,12 @@
 
 namespace todbench {
 
-/// Returns the mean along the bars, over the rows (horizontal) or columns within their length, at least one. The
-/// pattern is in the middle of the window.
+/// Returns the mean along the bars, over the rows (horizontal axis) or columns within the length of the bars, at least
+/// one. The pattern is in the middle of the window.
 [[nodiscard]] std::vector<float> bar_profile(const cv::Mat1f& window, double frequency_per_sample, BarAxis axis);
 
-/// Returns the smallest depth of a gap below the lower of its two bars. If it is above 0, four bars are resolved. A bar
-/// counts with its largest sample within max(w / 2, 1 / 2) of its centre, a gap with its smallest (as
+/// Returns the smallest depth of a gap below the lower of its two bars. If it is above 0, four bars are resolved. The
+/// level of a bar is its largest sample within max(w / 2, 1 / 2) of its centre, the level of a gap its smallest (as
 /// tod/range/bars_sampled.h). `offset`: middle of the pattern minus middle of the profile, in samples.
 [[nodiscard]] double shallowest_gap(std::span<const double> profile, double frequency_per_sample, double offset);
 

@@ -19,16 +19,16 @@ struct CameraHalo {
 };
 
 /// Estimates a halo from several set-ups: the brightness of the plate between the triangles, minus the tail of
-/// diffraction, is compared with that computed for normal halos of 3 to 22 pixels (sigma). The common part of all
-/// set-ups (fixed pattern, uneven lens or background) and a plane of every picture are subtracted, so that only light
-/// that moves with the triangles has an effect. A plate that is warm beside its openings cannot be distinguished from a
-/// halo.
+/// diffraction, is compared with the brightness that normal halos of 3 to 22 pixels (sigma) produce. The common part of
+/// all set-ups (fixed pattern, uneven lens or background) and a plane of every picture are subtracted, so that only
+/// light that moves with the triangles has an effect. A plate that is warm beside its openings cannot be distinguished
+/// from a halo.
 ///
 /// Pixels within 4 detector pitches of a triangle are not used; CameraOpticsFit evaluates them. The standard error is
 /// the largest of three estimates, clustered by blocks of 16 x 16 pixels, by rows and by columns of these blocks.
 class CameraHaloFit {
  public:
-  /// `samples_per_pitch`: of the camera.
+  /// `samples_per_pitch` belongs to the camera.
   CameraHaloFit(const SensorSpec& twin, int samples_per_pitch);
 
   /// Adds a picture of this contrast. Pictures of another size are ignored.

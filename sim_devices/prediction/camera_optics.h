@@ -65,7 +65,8 @@ class CameraOpticsFit {
   /// Returns whether the model covers this sensor, which must have no display, distortion, super-resolution or module.
   [[nodiscard]] static bool models(const SensorSpec& twin);
 
-  /// Adds a picture. Returns false if it has no large triangle with free surround, or if its fit does not converge.
+  /// Adds a picture. Returns false if the picture has no large triangle with free surround, or if its fit does not
+  /// converge.
   bool add(const OpticsPicture& picture);
 
   /// Returns the estimate; empty before the first picture.

@@ -18,7 +18,7 @@
 
 namespace todbench {
 
-/// The 75 % size at one contrast from one way of computing.
+/// The 75 % size at one contrast, computed in one way.
 struct ThresholdEstimate {
   double delta_t_k = 0;
   double s75_pitch = 0;
@@ -30,8 +30,8 @@ struct ThresholdEstimate {
 struct CostPoint {
   std::string knob;     ///< "wavelengths", "phases", "wrap", "band", "draws", "trials", "tolerance", "planner"
   std::string setting;  ///< value of the knob: "4", "1.5e-05", "5 %", "normal"
-  bool paired = false;  ///< same random numbers as its reference: the error is that of the knob alone
-  std::optional<double> wall_s{};         ///< computing time; empty, as the following ones, if not measured
+  bool paired = false;  ///< same random numbers as its reference: the error comes from the knob alone
+  std::optional<double> wall_s{};         ///< computing time; if not measured, this and the next two are empty
   std::optional<double> error_percent{};  ///< of the 75 % acuity against the reference; the largest over contrasts
   std::optional<double> standard_error_percent{};  ///< stated by the estimate; the largest over contrasts
   std::string not_measured{};                      ///< reason, a clause; empty if measured
@@ -86,7 +86,7 @@ struct CostTask {
   std::vector<CostTrials> trials;   ///< knob "trials"; cheap ones first
   std::uint64_t seed = 1;
   double budget_s = 60;  ///< wall time for the whole task
-  /// Time base of costs and budget. Work that still runs at the end of the budget is stopped by the host's clock.
+  /// Time base of costs and budget. The host's clock stops work that still runs at the end of the budget.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };
 
@@ -97,14 +97,14 @@ struct CostListener {
 };
 
 /// Estimates every threshold anew, template banks included, for the planner's choices and for each setting of each knob
-/// of Accuracy. Each knob varies alone, the others stay at the reference level.
+/// of Accuracy. Each knob varies alone; the other knobs stay at the reference level.
 ///
 /// The error of wavelengths, phases, wrap and band is relative to the reference level with the same number of draws and
-/// the same random numbers, so it is that of the knob alone. The error of draws, trials, tolerance and planner is
+/// the same random numbers, so it comes from the knob alone. The error of draws, trials, tolerance and planner is
 /// relative to the whole reference. It contains the variation of their random numbers, so their standard error is
 /// stated, too. Computing times are the shorter of two runs if there is time.
 ///
-/// The budget of time is not exceeded. The reference uses at most a third of it, if necessary with fewer draws and a
+/// The time budget is never exceeded. The reference uses at most a third of it, if necessary with fewer draws and a
 /// note. A point that does not fit is left unmeasured with a reason. The planner's chosen point comes first.
 ///
 /// Errors: `invalid_input` (the budget is too short for the reference), `interrupted`.

@@ -29,7 +29,7 @@ class CuedEstimate {
   /// Returns the 75 % size in pitches. `q` is the noise per sample over the contrast, internal noise included. Errors:
   /// `invalid_input` if no size from 0.2 to 40 pitches reaches 75 % correct, or if even the smallest exceeds it.
   [[nodiscard]] Result<double> s75_pitch(double q);
-  /// Returns d ln S75 / d ln q at q. For an observer with an eye, the derivative is by all noise together.
+  /// Returns d ln S75 / d ln q at q. For an observer with an eye, q stands for all noise together.
   [[nodiscard]] Result<double> sensitivity(double q);
   /// Returns the slope b of the Weibull function with the same slope as the proportion correct at the 75 % size:
   /// dP/dlnS = (b/4) ln 3.
@@ -40,7 +40,8 @@ class CuedEstimate {
  private:
   [[nodiscard]] Result<const SizeTrial*> trial_at(int index);
   [[nodiscard]] double proportion(const SizeTrial& trial, double q) const;
-  /// True if no size of the ladder can reach 75 % correct at `q`, judged by the sizes at `index` and four below.
+  /// Returns whether no size of the ladder can reach 75 % correct at `q`, judged by the sizes at `index` and `index` -
+  /// 4.
   [[nodiscard]] bool hopeless(double q, int index);
 
   TemplateObserver& observer_;

@@ -61,8 +61,8 @@ struct SceneSurvey {
 /// template banks, which the observer keeps.
 [[nodiscard]] SceneSurvey survey_scene(const SensorSpec& sensor, TemplateObserver& observer, const EffectScene& scene);
 
-/// Decides which effects are skipped, by the criteria of docs/method/effect-planning.md. The change by skipping an
-/// effect is bounded at every contrast, and the largest bound counts. The effects with the smallest bounds are skipped
+/// Decides which effects are skipped, by the criteria of docs/method/effect-planning.md. The criteria bound the change
+/// by skipping an effect at every contrast; the largest bound counts. The effects with the smallest bounds are skipped
 /// as long as their sum is within four fifths of the tolerance; the rest is reserved for numerical errors. Detector
 /// footprint, microscan, super-resolution and motion by half a pitch or more per time constant have no criterion and
 /// are always simulated. All effects are simulated if a contrast of the scene has no threshold, or if counts are too
@@ -72,8 +72,8 @@ struct SceneSurvey {
 [[nodiscard]] Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& observer,
                                               const EffectScene& scene, const EffectPlannerOptions& options);
 
-/// Caches its latest surveys: plans that differ only in tolerance, requests or trials are planned at once. Thread-safe;
-/// a request that arrives during a survey waits for it.
+/// Planner that caches its latest surveys, so that it plans at once if only tolerance, requests or trials differ.
+/// Thread-safe; a request that arrives during a survey waits for it.
 class EffectPlanner {
  public:
   /// Plans the effects as plan_effects() does, with a new observer.

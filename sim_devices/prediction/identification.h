@@ -33,7 +33,7 @@ struct IdentificationRange {
 enum class TemplateKnowledge {
   behind_camera,          ///< pictures behind this camera in this motion, as for people who learned from them
   behind_camera_at_rest,  ///< pictures behind this camera without motion
-  ideal                   ///< ideal pictures only: blur then makes targets similar to others
+  ideal                   ///< ideal pictures only: blur then makes targets resemble other targets
 };
 /// Differences between the targets.
 enum class TargetCues {
@@ -107,13 +107,13 @@ struct IdentificationEffort {
 [[nodiscard]] Result<IdentificationEffort> planned_effort(const IdentificationTask& task);
 
 /// Returns one point per range, in the same order. Every target in every aspect is shown with each draw of sensor and
-/// internal noise, in one of 16 sampling phases that change from draw to draw. Internal noise and the enlargement of
-/// the sensor's noise are those of the template observer; the contrast is dT_RSS behind the air, and for an observer
-/// with an eye it is converted to the luminance contrast of its display. A target in motion is judged at its true
-/// place, without the mean lag of time constant and exposure, and each row at its time, as in dynamic_trials().
+/// internal noise, in one of 16 sampling phases that change from draw to draw. The template observer sets the internal
+/// noise and the enlargement of the sensor's noise. The contrast is dT_RSS behind the air; for an observer with an eye
+/// it is converted to the luminance contrast of its display. A target in motion is judged at its true place, without
+/// the mean lag of time constant and exposure, and each row at its time, as in dynamic_trials().
 ///
 /// Stages receive rounded and clipped counts: of the window and its surround, or of the whole picture if a stage needs
-/// it. The contrast of a view, to which internal noise is relative, and the noise that the observer enlarges are those
+/// it. Internal noise is relative to the contrast of a view in the judged pictures, and the observer enlarges the noise
 /// of the judged pictures, so a gain has no effect. The templates of the observer do not include the stages. Ranges run
 /// in parallel on all processors, and the result does not depend on their number. Dead detectors are left out. Counts
 /// are rounded with the noise, not with the signal. Errors: `invalid_input` (fewer than two targets, targets that are

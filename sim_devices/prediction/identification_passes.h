@@ -33,7 +33,7 @@ struct PassWindow {
   cv::Point2d phase;
 };
 
-/// Contrast of a view and noise behind the stages, after division by the gain, relative to the values before the
+/// Contrast and noise of a view behind the stages, divided by the gain. Both are relative to the values before the
 /// stages.
 struct ViewScale {
   double contrast = 1, noise = 1;
@@ -71,7 +71,8 @@ class IdentificationPasses {
                        double transmittance, std::vector<AlternativeAspects> shown, int side);
   [[nodiscard]] Result<void> prepare_stages();
   [[nodiscard]] Result<void> measure_scales();
-  /// A view behind the stages against the same in front of them, by least squares over the window.
+  /// Gain of the stages for a view: least-squares fit of its picture behind the stages to its picture in front of them,
+  /// over the window.
   struct ViewGain {
     double product = 0, energy = 0;  ///< the gain is their ratio
     double variance = 0;             ///< variance of the product
@@ -81,9 +82,9 @@ class IdentificationPasses {
   /// `empty`: judged frames without a target, with the same noise.
   [[nodiscard]] Result<ViewGain> gain_of(std::size_t target, std::size_t aspect, const std::vector<cv::Mat1f>& noise,
                                          const std::vector<cv::Mat1f>& empty) const;
-  /// Middle of a window as place of the nearest sample to `place`.
+  /// Returns the window whose middle is the sample nearest to `place`.
   [[nodiscard]] cv::Rect window_at(cv::Point2d place) const;
-  /// Adds the targets to the noise, passes the frames through the stages, and returns those of the pass.
+  /// Adds the targets to the noise, sends the frames through the stages, and returns the frames of the pass.
   [[nodiscard]] Result<std::vector<cv::Mat1f>> shown_frames(std::vector<cv::Mat1f> noise, const Signals& signals) const;
   [[nodiscard]] Result<void> through_stages(std::vector<cv::Mat1f>& frames) const;
 

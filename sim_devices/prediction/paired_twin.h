@@ -42,9 +42,10 @@ struct TwinAnswer {
   double variance = 0;             ///< variance of that mean, from the scatter over the pictures
 };
 
-/// Shows every trial to the simulated sensor as the camera had it: sub-pixel phase of the triangle, rotation of the
-/// plate, effective contrast (which the observer also divides by), and size in mrad with the sensor's own instantaneous
-/// field of view. Returns one answer per trial, in the same order. Trials of a presentation must be consecutive.
+/// Shows every trial to the simulated sensor as the camera observed it: sub-pixel phase of the triangle, rotation of
+/// the plate, effective contrast (which the observer also divides by), and size in mrad with the sensor's own
+/// instantaneous field of view. Returns one answer per trial, in the same order. Trials of a presentation must be
+/// consecutive.
 ///
 /// Computes only the windows round the triangles, edge by edge in one picture; other triangles of the plate do not
 /// contribute to a window. Fixed pattern and dead pixels are new in every draw and set-up, so the mean includes them.

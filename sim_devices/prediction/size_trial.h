@@ -27,7 +27,7 @@ struct Proportion {
 /// Orientations that are shown.
 enum class ShownOrientations {
   as_needed,  ///< one represents all four if no effect depends on direction
-  all,        ///< for comparisons draw by draw between conditions of which only some need all four
+  all,        ///< for draw-by-draw comparisons of conditions if some of them need all four
 };
 
 /// Fails with `invalid_input` if the samples of the observer do not have the shape of the pixels of the sensor.
@@ -61,8 +61,8 @@ struct WhiteNoise {
 
 /// Responses to the signal for every sampling phase, and projected noise. Each is computed once and shared by the
 /// contrasts. Every kind of noise has its own random numbers, so leaving one out does not change another. White noise
-/// that is turned, mirrored or negated is equally probable, and its scores are those of exchanged templates. Each draw
-/// is therefore used in all sixteen ways, each in a sixteenth of the phases. One thread at a time.
+/// that is turned, mirrored or negated is equally probable and has the scores of exchanged templates. Each draw is
+/// therefore used in all sixteen ways, each in a sixteenth of the phases. One thread at a time.
 class SizeTrial {
  public:
   SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank> bank, double size_pitch,
@@ -72,8 +72,8 @@ class SizeTrial {
   [[nodiscard]] Proportion proportion(const WhiteNoise& white, double contrast_k, int draws);
 
   /// Returns the proportion correct with the counts of the sensor: every pixel of every trial is rounded and clipped.
-  /// Each draw is used in as many sampling phases as an axis has, all phases in turn; there are twice as many phases as
-  /// without rounding. Precondition: conditions.by_pixels.
+  /// Each draw is used in as many sampling phases as an axis has; the draws take all phases in turn. There are twice as
+  /// many phases as without rounding. Precondition: conditions.by_pixels.
   [[nodiscard]] Proportion pixel_proportion(const PixelContrast& contrast, int draws);
 
   /// Returns the proportion correct of an observer that knows the position (to half a search step) in white noise of sd
@@ -81,9 +81,9 @@ class SizeTrial {
   /// (known_position.h).
   [[nodiscard]] double known_position_proportion(double noise, int nodes, double eye_sd = 0) const;
 
-  /// Returns the variance of the score difference between the true template and another, for numbers of sd 1 that
-  /// samples share as stated, over that for white noise of sd 1. Returns the largest value over the alternatives, at
-  /// the middle of the search.
+  /// Returns the variance of the score difference between the true template and another for numbers of sd 1 that
+  /// samples share as stated, divided by the variance for white noise of sd 1. The result is the largest ratio over the
+  /// alternatives, at the middle of the search.
   [[nodiscard]] double variance_ratio(SharedBy shared) const;
   /// Returns the standard deviation of the noise of the eye in a score, in units of the contrast. 0 without an eye.
   [[nodiscard]] double eye_sd(double contrast_k) const;
@@ -93,7 +93,7 @@ class SizeTrial {
   [[nodiscard]] double eye_variance(double contrast_k) const;
 
  private:
-  /// Turns the products of four templates into the covariance of their scores in white noise and noise of the eye.
+  /// Converts the products of four templates to the covariance of their scores in white noise and noise of the eye.
   void add_eye_gram(double noise, double eye_sd, std::array<std::array<double, 4>, 4>& gram) const;
   struct Response {
     int truth = 0;              ///< the alternative that is shown
@@ -120,7 +120,7 @@ class SizeTrial {
   [[nodiscard]] double correct(int truth, std::span<const float> signal, std::span<const float> noise,
                                float scale) const;
   /// Share of correct answers over the phases and the ways of using a draw. White noise is multiplied by `own`,
-  /// coloured noise by `ratio`, that of the eye by `eye`.
+  /// coloured noise by `ratio`, and noise of the eye by `eye`.
   [[nodiscard]] double share_in_all_ways(std::size_t draw, float own, float scale, float ratio, float eye);
   /// Scores of a response whose picture has `defects` replaced.
   [[nodiscard]] std::vector<float> with_defects(const Response& response, const cv::Mat1b& defects) const;

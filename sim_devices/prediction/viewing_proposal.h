@@ -23,10 +23,11 @@ struct ViewingProposal {
   double viewing_distance_m = 0;   ///< largest at the stated zoom
 };
 
-/// Compares S75 at the largest contrast, by direct estimates at angles of 1 to 8 arcmin per displayed sample, with that
-/// of a large picture: the mean at 6 and 8 arcmin. Between angles ln S75 is linear in the logarithm of the angle. The
-/// angle is changed by the distance, at constant luminance. A small eye movement, accommodation and the field of view
-/// are not modelled. Precondition: an eye with a display. Errors: those of direct_estimate().
+/// Compares S75 at angles of 1 to 8 arcmin per displayed sample with S75 of a large picture, the mean at 6 and 8
+/// arcmin. All are direct estimates at the contrast `delta_t_k`. Between angles ln S75 is interpolated linearly in the
+/// logarithm of the angle. The angle is changed by the distance, at constant luminance. A small eye movement,
+/// accommodation and the field of view are not modelled. Precondition: an eye with a display. Errors: those of
+/// direct_estimate().
 [[nodiscard]] Result<ViewingProposal> propose_viewing(const SensorSpec& sensor, const SensorPlan& effects,
                                                       const TemplateObserverSpec& observer, double delta_t_k,
                                                       std::stop_token stop);
