@@ -16,7 +16,7 @@ struct CorrectionDrift {
   double time_constant_s = 0;    ///< T of both drifts; 0: linear
 
   [[nodiscard]] bool any() const { return level_k_per_min != 0 || pattern_k_per_min != 0; }
-  /// Returns the equivalent duration in minutes at the initial rate for the drift after `since_s`.
+  /// Returns the minutes after which a drift at the initial rate equals the drift after `since_s` seconds.
   [[nodiscard]] double minutes(double since_s) const;
 };
 

@@ -33,15 +33,15 @@ struct LaboratoryOptions {
   double distance_m = 2;
   cv::Point2d centre_px{0.3, -0.2};  ///< middle of the plate in the picture, from the middle of the picture
   double rotation_deg = 0.4;         ///< rotation of the plate about the line of sight
-  /// Connects a camera other than the GigE Vision one. Its counts must be those of `sensor`.
+  /// Connects a camera other than the GigE Vision camera. It must send the counts of `sensor`.
   ConnectCamera connect;
   EmulatedGigeCameraConfig camera;  ///< the sensor sets geometry, rate and scale
-  /// Error of the stated scale: stated over true kelvin, measured from `scene_temperature_k` of the sensor; > 0.
-  /// Affects only cameras that state their scale. A scale that the kind of camera fixes is not changed.
+  /// Error of the stated scale: the ratio of stated to true kelvin, both measured from `scene_temperature_k` of the
+  /// sensor; > 0. Affects only cameras that state their scale. A scale that the kind of camera fixes is not changed.
   double stated_scale = 1;
   /// Mirrors between target and camera; a transmission of 1: none.
   double mirror_transmission = 1, mirror_temperature_k = 295;
-  double latency_s = 0;  ///< time from the exposure of a frame to its time stamp, in addition to that of the camera
+  double latency_s = 0;  ///< time from the exposure of a frame to its time stamp, in addition to the camera's latency
   BlackBodyOptions black_body;
   PlateStageOptions stage;  ///< its plates are set from `plates`
   /// Upright monitor in front of the camera instead of black body and plate. The instruments run without effect.
@@ -82,8 +82,8 @@ class Laboratory {
 
   /// Switches the camera off without notice to its client, as a pulled cable does.
   void switch_camera_off();
-  /// Switches the same camera on again, with the same serial number and the settings at power-up. No effect if it is
-  /// on. The count of exposures continues. Errors: those of start().
+  /// Switches the same camera on again, with the same serial number and the settings at power-up. Has no effect on a
+  /// camera that is on. The count of exposures continues. Errors: those of start().
   [[nodiscard]] Result<void> switch_camera_on();
 
  private:

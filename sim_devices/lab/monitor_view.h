@@ -50,7 +50,7 @@ class MonitorView {
   double pixel_samples_;
   cv::Point2d middle_;
   std::shared_ptr<const cv::Mat1f> seen_;  ///< the levels of signal_
-  cv::Mat1f signal_;                       ///< light minus that round the picture, as a fraction of white
+  cv::Mat1f signal_;                       ///< light minus the light around the picture, as a fraction of white
   double surround_ = 0;                    ///< light round the picture
 };
 

@@ -54,7 +54,7 @@ struct CameraFeature {
 
 /// Returns whether the feature has its own register. Chunks follow frames, and a bit is part of another register.
 [[nodiscard]] bool owns_register(const CameraFeature& feature);
-/// Returns the number of bytes of the register of the feature.
+/// Returns the size of the feature's register in bytes.
 [[nodiscard]] std::uint32_t register_bytes(const CameraFeature& feature);
 
 /// Description of a camera.

@@ -40,7 +40,7 @@ template <typename Config>
           .offset_k = config.offset_k};
 }
 
-/// Builders of features. Addresses are those of the registers.
+/// Builders of features. `address` is the address of the feature's register.
 namespace features {
 
 using Entries = std::vector<std::pair<std::string, std::uint32_t>>;

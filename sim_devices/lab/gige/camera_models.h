@@ -53,7 +53,7 @@ struct ModelDescription {
   ModelRegisters registers;
 };
 
-/// Returns registers and features of a model. An empty vendor or model name is replaced by that of the family.
+/// Returns registers and features of a model. The family's name replaces an empty vendor or model name.
 [[nodiscard]] ModelDescription describe_camera(CameraModel model, const ThermalCameraOptions& options);
 
 /// Returns the frames per second for a value of SensorVideoStandard of the Ax5; 0 for an unknown value.

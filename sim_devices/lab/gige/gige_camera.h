@@ -37,9 +37,9 @@ struct EmulatedGigeCameraConfig {
 /// camera per IPv4 address of a network namespace.
 ///
 /// The client may set PixelFormat Mono14 or Mono16, IRFormat, NoiseReduction, NUCMode, NUCAction, AcquisitionFrameRate
-/// and byte order. IRFormat sends the exposure's counts unchanged (TemperatureLinear10mK), divided by ten
-/// (TemperatureLinear100mK) or converted by `radiometric` (Radiometric). NoiseReduction averages successive frames; it
-/// is on at power-up, as in new cameras.
+/// and byte order. IRFormat determines whether the camera sends the exposure's counts unchanged
+/// (TemperatureLinear10mK), divided by ten (TemperatureLinear100mK) or converted by `radiometric` (Radiometric).
+/// NoiseReduction averages successive frames; it is on at power-up, as in new cameras.
 ///
 /// The camera's clock advances by one frame period with every exposure from power-up: exposure k at an unchanged rate f
 /// has device_time_ns = (k + 1) 10^9 / f. A client in another process can therefore identify the exposure of a frame
@@ -50,8 +50,8 @@ class EmulatedGigeCamera {
  public:
   /// Returns picture number `exposure_index`, counted from 0 at power-up over all streams. Called once per exposure on
   /// the thread of the camera, which also responds to the client. A call longer than a frame period lowers the frame
-  /// rate; a call longer than 0.5 s disturbs control. Must return the configured geometry; a wrong size or an exception
-  /// is sent as zeros and counted in failed_exposures().
+  /// rate; a call longer than 0.5 s disturbs control. Must return the configured geometry. After a wrong size or an
+  /// exception the camera sends zeros and counts the exposure in failed_exposures().
   using Exposure = std::function<cv::Mat1w(std::uint64_t exposure_index)>;
   /// Called on a camera thread when a non-uniformity correction begins, before the next exposure; no lock is held.
   using NucObserver = std::function<void()>;
@@ -86,8 +86,8 @@ class EmulatedGigeCamera {
   std::unique_ptr<State> state_;
 };
 
-/// Returns the number of the exposure since power-up of a frame of an emulated camera, from its device time.
-/// Precondition: unchanged rate.
+/// Returns the exposure number since power-up of a frame of an emulated camera, computed from the device time of the
+/// frame. Precondition: unchanged rate.
 [[nodiscard]] std::uint64_t exposure_index(const Frame& frame, double frame_rate_hz);
 
 }  // namespace todbench

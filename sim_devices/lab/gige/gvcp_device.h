@@ -66,7 +66,8 @@ class GvcpDevice {
   [[nodiscard]] GvcpStatus write(std::uint32_t address, std::uint32_t value, const GvcpEndpoint& from);
   [[nodiscard]] GvcpStatus change_privilege(std::uint32_t value, const GvcpEndpoint& from);
   [[nodiscard]] bool is_controller(const GvcpEndpoint& from) const;
-  /// Resend requests come from the socket that receives packets, not from the controller's.
+  /// Returns whether a sender may request packets again: any port of the controller's host, because the client's stream
+  /// socket sends these requests.
   [[nodiscard]] bool may_ask_again(const GvcpEndpoint& from) const;
 
   RegisterMap& registers_;

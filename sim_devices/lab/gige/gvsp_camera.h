@@ -25,14 +25,14 @@ enum class ResendPolicy {
   ignore,
 };
 
-/// Behaviour of the clock of a camera when its frame numbers restart.
+/// Behaviour of the camera's clock when the frame numbers restart.
 enum class ClockRestart { goes_on, begins_anew };
 
 /// Configuration of the camera.
 struct GvspCameraConfig {
   std::string interface_address = "127.0.0.1";  ///< IPv4 address of an interface that is up; one camera per address
   CameraModel model = CameraModel::ax5;
-  std::string vendor, model_name;  ///< empty: those of the model; at most 31 characters
+  std::string vendor, model_name;  ///< empty: names of the model; at most 31 characters
   std::string serial = "TB0002";   ///< 1 ... 15 characters
   std::string firmware = "1.0";
   int width = 320, height = 256;
@@ -43,7 +43,7 @@ struct GvspCameraConfig {
   PlanckScale radiometric{366545, 1428, 1, 342};  ///< scale of counts that are not linear in temperature
   int nuc_freeze_frames = 25;            ///< frames for which the last picture is repeated after a correction: 0.5 s
   unsigned automatic_nuc_frames = 3600;  ///< frames between automatic corrections
-  std::optional<PixelFormat> only_format{};           ///< in place of those of the model
+  std::optional<PixelFormat> only_format{};           ///< replaces the formats of the model
   std::chrono::milliseconds heartbeat_timeout{3000};  ///< at power-up
   std::uint16_t first_block_id = 65400;               ///< the 16-bit id wraps from 65535 to 1
   int row_padding_bytes = 0;                          ///< sent after every row, counted in the payload size
@@ -53,7 +53,7 @@ struct GvspCameraConfig {
   bool chunks_at_power_up = false;                    ///< ChunkModeActive
   std::uint16_t chunk_payload_type = 0x4001;          ///< 4: GigE Vision 1.x, whose leader states no size
   ResendPolicy resend = ResendPolicy::answer;
-  std::string description = {};               ///< served description, text or ZIP archive; empty: that of the model
+  std::string description = {};               ///< served description, text or ZIP archive; empty: the model's
   std::string description_url = {};           ///< stated location of the description; empty: the true one
   std::chrono::milliseconds memory_delay{0};  ///< delay before every response to READMEM
   std::string deaf_feature = {};              ///< feature that accepts writes but keeps its value of power-up

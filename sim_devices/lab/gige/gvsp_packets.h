@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Bytes of a packet of GevSCPSPacketSize in addition to its data: IPv4, UDP and GVSP headers.
+/// Bytes that GevSCPSPacketSize counts in addition to the data of a packet: IPv4, UDP and GVSP headers.
 inline constexpr std::size_t gvsp_overhead_bytes = 20 + 8 + 8;
 
 inline constexpr std::uint16_t gvsp_status_success = 0x0000;

@@ -39,7 +39,7 @@ struct BlackBodyOptions {
   double plate_coupling = 0.02;
   /// Reports absolute temperatures in degrees Celsius, contrary to the table of the instrument.
   bool celsius = false;
-  /// Error of the sensor: returns the real difference in K, a finite number, for an indicated difference of
+  /// Error of the sensor: returns the real difference in K, which must be finite, for an indicated difference of
   /// `indicated_k`. Called from any thread. Empty: a perfectly calibrated instrument.
   std::function<double(double indicated_k)> real_delta_t_k{};
   /// Time base of the settling. Called from any thread. Never runs backwards.

@@ -7,7 +7,8 @@
 
 namespace todbench {
 
-/// Seconds, at least 0: another thread may have read the clock later and stored its time first.
+/// Returns the seconds from `from` to `to`; 0 if `to` is earlier, because another thread may have read the clock later
+/// and stored its time first.
 [[nodiscard]] inline double seconds_between(std::chrono::steady_clock::time_point from,
                                             std::chrono::steady_clock::time_point to) {
   return std::max(0.0, std::chrono::duration<double>(to - from).count());

@@ -48,7 +48,7 @@ struct PlateStageOptions {
   double slowest_run_mm_per_s = 0.01;  ///< the fastest run has the speed of the table
   double run_jitter_mm = 0;  ///< standard deviation of the position during a run, drawn anew every millisecond
   std::uint64_t seed = 1;    ///< seed of the jitter
-  /// Error of the stage: returns the real position of the plate, a finite one, for an indicated position of
+  /// Error of the stage: returns the real position of the plate, which must be finite, for an indicated position of
   /// `indicated_mm`. Called from any thread. Empty: no error. The owner of the scene applies this error; the encoders
   /// do not include it.
   std::function<cv::Point2d(cv::Point2d indicated_mm)> real_place_mm{};

@@ -35,7 +35,7 @@ struct U3vCameraConfig {
   double kelvin_per_count = 0.01, offset_k = 0;
   int nuc_freeze_frames = 0;  ///< frames for which the last picture is repeated after a correction
   U3vDescription description = U3vDescription::plain;
-  std::string description_text = {};           ///< the description; empty: that of the camera
+  std::string description_text = {};           ///< the served description; empty: the camera's own
   std::uint64_t stated_description_bytes = 0;  ///< 0: the true size
   U3vIdentityNodes identity_nodes = U3vIdentityNodes::present;
   std::optional<std::string> usb_serial{};  ///< serial number in the USB descriptors if it differs from `serial`

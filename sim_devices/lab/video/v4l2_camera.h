@@ -40,8 +40,8 @@ struct VideoDriverQuirks {
 class EmulatedV4l2Camera {
  public:
   /// Returns picture number `exposure_index`, counted from 0 at power-up over all streams. Called on the camera's
-  /// thread. Must return the configured geometry; a wrong size or an exception is sent as zeros and counted in
-  /// failed_exposures().
+  /// thread. Must return the configured geometry. After a wrong size or an exception the camera sends zeros and counts
+  /// the exposure in failed_exposures().
   using Exposure = std::function<cv::Mat1w(std::uint64_t exposure_index)>;
 
   /// Plugs the camera in. Errors: `invalid_input` (configuration).
