@@ -19,8 +19,8 @@ struct BenchAir {
 
 /// Returns the transmittance for a contrast over `length_m`, from the shipped tables without aerosol. The optical depth
 /// of the model atmospheres at this length is interpolated linearly in their absolute humidity, and extrapolated beyond
-/// the most humid one up to 30 g/m3. The band models are extrapolated to a few metres, so the uncertainty of the loss
-/// is large (bench_air_relative_half_width). Errors: `invalid_input` (no table band is near, more than 30 g/m3 of
+/// the most humid atmosphere up to 30 g/m3. The band models are extrapolated to a few metres, so the uncertainty of the
+/// loss is large (bench_air_relative_half_width). Errors: `invalid_input` (no table band is near, more than 30 g/m3 of
 /// water, a length of 0 or less or beyond the tables).
 [[nodiscard]] Result<double> bench_transmittance(const BenchAir& air, double length_m, const SpectralBand& band);
 

@@ -22,7 +22,7 @@ inline constexpr std::array budget_distributions{BudgetDistribution::normal, Bud
 /// Returns the name in plans, for example "u-shaped".
 [[nodiscard]] std::string_view to_string(BudgetDistribution distribution);
 
-/// Quantities that share a row: it cancels in a ratio to the twin, in a trend, or between contrasts.
+/// Quantities that share a row. The row cancels in a ratio to the twin, in a trend, or between contrasts.
 enum class BudgetCommon { twin, series, contrasts };
 inline constexpr std::array budget_commons{BudgetCommon::twin, BudgetCommon::series, BudgetCommon::contrasts};
 /// Returns the name of the enumerator.

@@ -37,8 +37,8 @@ struct InstrumentCertificate {
 
 /// Returns the budget row of a black body: the largest standard uncertainty of the temperatures with the name
 /// `quantity` (empty: of all temperatures), stated as expanded uncertainty with its coverage factor. Errors:
-/// `invalid_input` (no such temperature has an expanded uncertainty; the certificate contains angles and is therefore
-/// that of a camera).
+/// `invalid_input` (no such temperature has an expanded uncertainty; the certificate contains angles and therefore
+/// belongs to a camera).
 [[nodiscard]] Result<BudgetRow> black_body_row(const InstrumentCertificate& certificate, const std::string& quantity,
                                                const std::string& file);
 

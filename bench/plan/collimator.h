@@ -16,7 +16,8 @@ namespace todbench {
 /// returns `black_body_k`.
 [[nodiscard]] double seen_through_k(const Plan& plan, const SpectralBand& band, double black_body_k);
 
-/// Shorter than any collimator for a thermal camera: 2 is a focal length of 2 m, stated in metres.
+/// Smallest accepted focal length, shorter than any collimator for a thermal camera. It detects a focal length stated
+/// in metres: 2 instead of 2000.
 inline constexpr double least_focal_length_mm = 10;
 
 /// Names of the rows that a collimator adds to a budget.

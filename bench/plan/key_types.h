@@ -33,7 +33,7 @@ struct NumberKey {
 struct OptionalNumberKey {
   NumberRange range;
 };
-/// Optional number; the file contains `word` if it is empty.
+/// Optional number. The file contains `word` for an empty value.
 struct NumberOrWordKey {
   NumberRange range;
   std::string_view word;

@@ -12,8 +12,8 @@ namespace todbench {
 
 /// Requires the pixel check and a name that no earlier row has.
 [[nodiscard]] ValueMistakes check_zone_name(const Plan& plan, std::size_t row);
-/// Requires an area that is not empty and does not overlap with those of earlier rows, except for the zone of the whole
-/// frame.
+/// Requires an area that is not empty and does not overlap with the areas of earlier rows. Ignores the zone of the
+/// whole frame.
 [[nodiscard]] ValueMistakes check_zone_area(const Plan& plan, std::size_t row);
 /// Requires at least one limit.
 [[nodiscard]] ValueMistakes check_zone_limits(const Plan& plan, std::size_t row);

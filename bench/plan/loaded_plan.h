@@ -45,7 +45,7 @@ struct MeasurePlate {
   std::string MeasuresPlan::*reference;
   std::optional<TargetPlate> PlanParts::*part;
 };
-/// In the order of PlateUse.
+/// Plates of the measures, in the order of PlateUse.
 inline constexpr std::array<MeasurePlate, 5> measure_plates{{
     {&MeasuresPlan::mtf, &MeasuresPlan::mtf_plate, &PlanParts::mtf_plate},
     {&MeasuresPlan::ctf, &MeasuresPlan::ctf_plate, &PlanParts::ctf_plate},
@@ -54,14 +54,14 @@ inline constexpr std::array<MeasurePlate, 5> measure_plates{{
     {&MeasuresPlan::mrtd, &MeasuresPlan::mrtd_plate, &PlanParts::mrtd_plate},
 }};
 
-/// Valid plan with the parts that it names: the start of every run, forecast and report. Nothing is read again later.
+/// Valid plan with the parts that it names: the start of every run, forecast and report. No file is read again later.
 /// Immutable; threads may share it.
 class LoadedPlan {
  public:
   /// Validates the plan and reads its parts with `find`. Errors: `invalid_input` about the key (validate(); part not
   /// found or invalid).
   [[nodiscard]] static Result<LoadedPlan> load(Plan plan, const ResourceFinder& find = find_resource);
-  /// Combines a plan with parts already read, which must be those that it names. Errors: validate().
+  /// Combines a plan with parts already read, which must be the parts that the plan names. Errors: validate().
   [[nodiscard]] static Result<LoadedPlan> of(Plan plan, PlanParts parts);
   /// Loads another plan and reads only the parts that this one does not have.
   [[nodiscard]] Result<LoadedPlan> with(Plan plan, const ResourceFinder& find = find_resource) const;
@@ -96,10 +96,11 @@ class LoadedPlan {
 /// Returns the plan with absolute paths of the files that it names; relative ones are relative to `folder`.
 [[nodiscard]] Plan with_absolute_references(Plan plan, const std::filesystem::path& folder);
 
-/// Fails if the observer has an eye, and the plan has no display or a module in place of the observer.
+/// Fails if the observer has an eye but the plan has no display, or has a module in place of the observer.
 [[nodiscard]] Result<void> check_eye(const Plan& plan, const PlanParts& parts);
 
-/// Reads the parts that keys of a type name in `plan` into `parts`. Returns the mistakes by element of the list.
+/// Reads into `parts` the descriptions that `plan` names by keys of this type. Returns the mistakes by element of the
+/// list.
 [[nodiscard]] std::vector<ValueMistake> read_parts(const KeyType& type, const Plan& plan, const ResourceFinder& find,
                                                    PlanParts& parts);
 

@@ -29,7 +29,7 @@
 
 namespace todbench {
 
-/// [camera] warm_up: condition that the camera meets before a run. All defaults: no condition.
+/// [camera] warm_up: condition that the camera meets before a run. The defaults state no condition.
 struct WarmUpPlan {
   double time_s = 0;           ///< frames are taken for this time before the run
   double drift_k_per_min = 0;  ///< the drift of the frame mean must be below this; 0: not checked
@@ -44,7 +44,7 @@ struct WarmUpPlan {
 struct CameraPlan {
   std::string id;             ///< as listed by `todbench devices`, e.g. "gige:FLIR-48000123"
   double ifov_mrad = 0;       ///< field of view of one pixel along x; required with an id
-  double pixel_aspect = 1;    ///< height over width of a pixel; without the key, LoadedPlan uses that of the sensor
+  double pixel_aspect = 1;    ///< height over width of a pixel; without the key, LoadedPlan uses the sensor's value
   double nuc_interval_s = 0;  ///< period of commanded corrections; 0: never commanded
   double nuc_wait_s = 1;      ///< frames within this time after a correction are not measured
   std::map<std::string, std::string> settings;   ///< feature -> value; set before the run and read back
@@ -141,7 +141,7 @@ struct SimulationPlan {
   double tolerance_percent = 1;     ///< allowed numerical error of the 75 % acuity
   int microscan = 1;                ///< samples per pitch and axis; replaces the value of the sensor file
   int phases = 16;                  ///< sub-pixel shifts per plate, mounting and contrast of the twin
-  SceneMotion motion{};             ///< motion of the target; it has an effect if the sensor has a time constant
+  SceneMotion motion{};             ///< motion of the target; it acts through time constant, exposure and readout
   std::vector<Effect> skip, force;  ///< effects left out, or simulated, regardless of the planner
   bool paired = true;               ///< graded answers: the twin also judges the camera's presentations
   bool operator==(const SimulationPlan&) const = default;
@@ -218,7 +218,7 @@ struct MeasureLimit {
   bool operator==(const MeasureLimit&) const = default;
 };
 
-/// Name of the zone that is the whole frame, whatever its area.
+/// Name of the zone that covers the whole frame, whatever its stated area.
 inline constexpr std::string_view whole_frame_zone = "whole";
 
 /// Row of [[limits.zone]]: largest number of defective pixels in a part of the frame.
@@ -274,7 +274,7 @@ struct MeasurementPlan {
   double max_scale_deviation = 0.02;
   double max_rotation_deg = 10;
   double max_residual_px = 0.25;
-  double max_readback_deviation_k = 0.002;  ///< set point against read-back of the target; a larger one gives a note
+  double max_readback_deviation_k = 0.002;  ///< set point minus read-back of the target; a larger deviation adds a note
   bool record_frames = false;               ///< write every frame to frames/, for `todbench replay`
   bool operator==(const MeasurementPlan&) const = default;
 };
@@ -494,7 +494,7 @@ struct InstrumentPlan {
   bool operator==(const InstrumentPlan&) const = default;
 };
 
-/// Returns the role of an instrument: the stated one, or that of its name; never `by_name`.
+/// Returns the role of an instrument: the stated role, or the role that its name implies; never `by_name`.
 [[nodiscard]] InstrumentRole role_of(const InstrumentPlan& instrument);
 
 /// Complete plan with all defaults filled in.
@@ -510,7 +510,7 @@ struct Plan {
   std::string observer = "hvs-1";  ///< name or file; key `name` of [observer]
   /// Section [display]: the display of the operator, for an observer with an eye. All defaults: not stated.
   ViewedDisplay display;
-  /// Reports the thresholds of hvs-2 at the display in addition to those of the observer; key `as_operator` of
+  /// Reports the thresholds of hvs-2 at the display in addition to the observer's thresholds; key `as_operator` of
   /// [display].
   bool display_as_operator = false;
   SimulationPlan simulation;
@@ -541,12 +541,12 @@ struct Plan {
 
 /// Reads a plan by name ("demo") or file; the keys are the rows of bench/plan/..._keys.cpp, listed in
 /// docs/reference/plan-keys.md. Relative file names in the plan are relative to its folder; the result has absolute
-/// ones. Errors: `invalid_input` with file and line (key or value unknown, missing, of the wrong type, out of range,
+/// names. Errors: `invalid_input` with file and line (key or value unknown, missing, of the wrong type, out of range,
 /// contradictory, or a file not found).
 [[nodiscard]] Result<Plan> load_plan(std::string_view reference);
 /// Parses text already read; relative file names are relative to `folder`.
 [[nodiscard]] Result<Plan> parse_plan(const Resource& resource, const std::filesystem::path& folder);
-/// Returns the complete plan as TOML; parse_plan() of it gives an equal plan.
+/// Returns the complete plan as TOML. parse_plan() of this text returns an equal plan.
 [[nodiscard]] std::string to_toml(const Plan& plan);
 
 /// Checks a plan that was not read from a file for the mistakes that parse_plan() rejects: values out of range,
@@ -556,8 +556,8 @@ struct Plan {
 
 /// Returns the relative standard uncertainty of the camera's temperature scale from the contrast rows of the budget,
 /// without the camera-scale row. Rows in kelvin are divided by the largest step of the signal transfer. The value is
-/// converted to that of a normal distribution with the same 95 % interval (factor 1.96); this holds for the two
-/// functions below as well.
+/// the standard deviation of a normal distribution with the same 95 % interval (factor 1.96), as in the two functions
+/// below.
 [[nodiscard]] double relative_u_of_scale(const Plan& plan);
 /// Returns the relative standard uncertainty of a temperature difference on the camera's scale, from the camera-scale
 /// row.
@@ -565,11 +565,11 @@ struct Plan {
 /// Returns the relative standard uncertainty of an angle per pixel, from the rows of distance and entrance pupil.
 [[nodiscard]] double relative_u_of_distance(const Plan& plan);
 /// Returns the standard uncertainty of ln acuity from the rows whose sensitivity is known before the measurement,
-/// without those shared with `common`.
+/// without the rows shared with `common`.
 [[nodiscard]] double known_u_of_acuity(const Plan& plan, BudgetCommon common);
 
-/// Fails if the due date of an instrument is before `today`. Error: code `calibration`, one sentence that names all of
-/// them.
+/// Fails if the due date of an instrument is before `today`. Error: code `calibration`, one sentence that names all
+/// these instruments.
 [[nodiscard]] Result<void> check_calibration(const Plan& plan, std::chrono::year_month_day today);
 
 }  // namespace todbench

@@ -42,7 +42,7 @@ struct KeyPlace {
   std::function<void(Plan&, std::size_t row, const KeyValue&)> set;
 };
 
-/// Value of an absent key that is taken from elsewhere in the plan instead of the default.
+/// Value that an absent key takes from elsewhere in the plan instead of its default.
 struct KeyFallback {
   std::string_view words{};  ///< text for documents: "value of the sensor"
   std::function<KeyValue(const Plan&, const PlanParts&)> value{};
@@ -58,7 +58,7 @@ enum class Required {
 /// Condition under which another key of the plan replaces a key.
 struct KeyReplaced {
   std::function<bool(const Plan&)> by{};  ///< true: a file must not have the key, and a plan is written without it
-  std::string_view sentence{};            ///< mistake of a file that has the key nevertheless
+  std::string_view sentence{};            ///< message about a file that has the key nevertheless
   [[nodiscard]] bool in(const Plan& plan) const { return by && by(plan); }
 };
 
@@ -76,7 +76,7 @@ struct PlanKey {
   KeyOption option{};
   /// Replaces the range of the type if the rest of the plan narrows it. The key is then required.
   std::function<std::optional<NumberRange>(const Plan&)> narrowed{};
-  /// Returns the mistakes of the value given the rest of the plan.
+  /// Returns the mistakes in the value, given the rest of the plan.
   std::function<std::vector<ValueMistake>(const Plan&, std::size_t row)> check{};
   /// False: a plan with the default value is written without the key.
   bool written_at_default = true;
@@ -103,7 +103,7 @@ struct PlanSection {
   [[nodiscard]] std::size_t count(const Plan& plan) const { return repeated() ? rows.count(plan) : 1; }
 };
 
-/// Returns the table in the order of reading and writing: a key comes after those that its fallback or check uses.
+/// Returns the table in the order of reading and writing: a key comes after the keys that its fallback or check uses.
 [[nodiscard]] const std::vector<PlanSection>& plan_sections();
 
 /// Returns the path in Error::key: "target.delta_t_k".

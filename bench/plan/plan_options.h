@@ -35,8 +35,8 @@ enum class Side {
 [[nodiscard]] RampOptions ramp_options(const Plan& plan, const std::vector<TargetPlate>& plates, double ifov_mrad);
 /// Returns the plan for the twin of a camera: a ramp becomes a constant schedule, and every contrast settles.
 [[nodiscard]] Plan with_settled_contrasts(Plan plan);
-/// Adds the contrasts of the acuity limits to those of the target, if the schedule is a ramp. Returns other plans
-/// unchanged.
+/// Adds the contrasts of the acuity limits to the contrasts of the target, if the schedule is a ramp. Returns other
+/// plans unchanged.
 [[nodiscard]] Plan with_limits_in_ramp(Plan plan);
 /// Returns whether the contrast of each presentation is measured from its own frames.
 [[nodiscard]] bool has_own_contrasts(const Plan& plan);
@@ -53,8 +53,8 @@ struct ChosenEstimator {
   FitEstimator estimator = FitEstimator::weibull;
   EstimatorReason reason = EstimatorReason::no_twin;
 };
-/// Chooses the estimator: the one that the plan names; otherwise the function of the simulated twin `sensor`, or a
-/// Weibull function if modules follow it. No other code chooses it.
+/// Chooses the estimator that the plan names. If it names none, chooses the function of the simulated twin `sensor`, or
+/// a Weibull function if modules follow the sensor. No other code chooses the estimator.
 [[nodiscard]] ChosenEstimator chosen_estimator(const Plan& plan, const SensorSpec& sensor);
 /// Frames that a graded answer averages if the plan leaves the number open.
 inline constexpr int frames_of_graded_answers = 4;
@@ -62,10 +62,11 @@ inline constexpr int frames_of_graded_answers = 4;
 inline constexpr int least_graded_presentations = 8;
 /// Returns the frames per presentation that the plan states for a contrast; 0: left open, or no such contrast.
 [[nodiscard]] int frames_at(const Plan& plan, double delta_t_k);
-/// Chooses the kind of answers: the one that the plan names; otherwise graded ones if the model observer judges, the
-/// function of the twin is fitted, and the intervals are validated: constant schedule with at least eight presentations
-/// at each contrast, contrasts in kelvin, no lapse rate. No other code chooses it. Number of frames: at `delta_t_k`
-/// (empty: first contrast of the plan); four for graded answers if the plan leaves it open.
+/// Chooses the kind of answers that the plan names. If it names none, chooses graded answers if their intervals are
+/// validated: function of the twin without a lapse rate, contrasts in kelvin, and a ramp or at least eight
+/// presentations at each contrast. Otherwise chooses binary answers. No other code chooses the kind. The number of
+/// frames is for `delta_t_k` (empty: first contrast of the plan); it is four for graded answers if the plan leaves it
+/// open.
 [[nodiscard]] AnswersTaken chosen_answers(const Plan& plan, const SensorSpec& sensor,
                                           std::optional<double> delta_t_k = std::nullopt);
 /// Returns the options with the equivalence margin of the limits; 10 % if the plan has none.

@@ -54,9 +54,9 @@ struct Resource {
 /// Returns the path of a file reference that appears in a file of `folder`; names are returned unchanged.
 [[nodiscard]] std::string absolute_reference(std::string_view reference, const std::filesystem::path& folder);
 /// Finds a resource; relative files are relative to the current folder. Errors: `invalid_input` (unknown name: the
-/// message lists the known ones and the nearest; unreadable file).
+/// message lists the known names and the nearest; unreadable file).
 [[nodiscard]] Result<Resource> find_resource(ResourceKind kind, std::string_view reference);
-/// Function find_resource(), or a replacement of it.
+/// Finder of resources: find_resource() or its replacement.
 using ResourceFinder = std::function<Result<Resource>(ResourceKind kind, std::string_view reference)>;
 
 }  // namespace todbench
