@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time that a plan occupies the bench. The only formula for it, used by command line and window.
+// Time that a plan occupies the bench. Command line and window use only this formula.
 #pragma once
 
 #include <cstdint>
@@ -30,23 +30,23 @@ struct BenchTime {
   double changes_s = 0;  ///< including those of the physical measures
   /// Frames for registration, contrast, answers and physical measures, including frames discarded after a change.
   std::uint64_t frames = 0;
-  /// Parts of `frames`: those that locate the plate and measure contrasts, and those of the presentations by set
-  /// contrast.
+  /// Parts of `frames`: the frames that locate the plate and measure contrasts, and the frames of the presentations by
+  /// set contrast.
   std::uint64_t looking_frames = 0;
   std::map<double, std::uint64_t> presentation_frames{};
   double frames_s = 0;
   std::vector<MeasureTime> measures{};  ///< parts of changes_s and frames, in the order of the run
-  MeasureTime all_measures{};           ///< the same of all measures, with the change of the target before the first
-  double warm_up_s = 0;                 ///< part of changes_s: before the run, at least
+  MeasureTime all_measures{};           ///< sum over the measures, with the change of the target before the first
+  double warm_up_s = 0;                 ///< part of changes_s: shortest warm-up before the run
   double corrections_s = 0;             ///< waiting time after commanded corrections of the camera
   [[nodiscard]] double total_s() const { return changes_s + frames_s + corrections_s; }
 };
 
 /// Computes the bench time of a plan whose frames per presentation are chosen (with_frames()). `presentations`: the
 /// number that an adaptive schedule is expected to show at each contrast of the plan; empty: its cap. Each visit to a
-/// set-up shows the contrasts that need more, and the highest one at least once. A schedule that lists its
-/// presentations ignores the numbers. For a target of kind scene only counts are computed, no times, because such a
-/// target is limited only by the processor.
+/// set-up shows the contrasts that need more presentations, and the highest contrast at least once. A schedule that
+/// lists its presentations ignores the numbers. For a target of kind scene only counts are computed, no times, because
+/// only the processor limits this target.
 [[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,
                                    const std::vector<double>& presentations);
 /// Computes the bench time for presentations that are already listed.
@@ -55,16 +55,16 @@ struct BenchTime {
                                    const std::vector<double>& presentations);
 
 /// Returns a sentence if a run of this bench time records no frames, so that `measure --resume` could not continue it
-/// after an interruption; empty for runs of less than ten minutes and of a simulated scene.
+/// after an interruption; empty for runs of less than ten minutes and for a simulated scene.
 [[nodiscard]] std::string resume_remark(const Plan& plan, double bench_s);
 
-/// Returns the contrasts that the presentations of a set-up have in the ramp of a plan, in K: those of a black body of
-/// first order behind its set-points, with the presentations that it adds at the end of the ramp down.
+/// Returns the contrasts in K that the presentations of a set-up have in the ramp of a plan. They are the response of a
+/// first-order black body to its set-points. A slow black body adds presentations at the end of the ramp down.
 [[nodiscard]] std::vector<double> ramp_contrasts_k(const Plan& plan);
 
-/// Returns the presentations of a constant schedule for bench_time(); of an adaptive schedule those of its visits,
-/// because it stays in a set-up for a whole visit. They do not depend on the frames per presentation. Choosing their
-/// phases takes 20 ms for the demonstration.
+/// Returns the presentations of a constant schedule for bench_time(). For an adaptive schedule, returns the
+/// presentations of its visits, because the schedule stays in a set-up for a whole visit. The result does not depend on
+/// the frames per presentation. Choosing their phases takes 20 ms for the demonstration.
 [[nodiscard]] std::vector<TargetState> listed_presentations(const Plan& plan, const std::vector<TargetPlate>& plates);
 
 }  // namespace todbench

@@ -18,9 +18,9 @@ struct ComparisonForecast {
   std::string sentence;                      ///< begins with "warning" if the power is below 80 %
 };
 
-/// Forecasts the comparison of camera and twin. Standard errors: if the plan makes pairs, those of the ratio by common
-/// phases, which then decides; otherwise the predicted uncertainty of the simulated design. Both are scaled to the
-/// camera's own number of phases.
+/// Forecasts the comparison of camera and twin. If the plan makes pairs, the standard errors follow from the ratio by
+/// common phases, because this ratio then decides. Otherwise they follow from the predicted uncertainty of the
+/// simulated design. Both are scaled to the camera's own number of phases.
 [[nodiscard]] ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction);
 
 /// Forecasts the comparison of two curves at its contrasts. The standard errors follow from the intervals of the

@@ -13,13 +13,14 @@ namespace todbench {
 /// enough.
 [[nodiscard]] double contrast_variance_per_pixel(const TargetPlate& plate, double pixels_per_mm, double min_size_px);
 
-/// Returns d ln S75 / d ln contrast at each contrast of a prediction, as join_contrast_errors() takes it from a curve.
+/// Returns d ln S75 / d ln contrast at each contrast of a prediction, as join_contrast_errors() computes it from a
+/// curve.
 [[nodiscard]] std::vector<double> expected_contrast_effects(const std::vector<ContrastPrediction>& contrasts);
 
-/// Returns the half-width of ln S75 that the scatter of a measured contrast makes alone, as AdaptiveSchedule takes it:
-/// after the set-up in which half of the runs end. `looks`: how often the contrast is measured in each set-up. A
+/// Returns the half-width of ln S75 that the scatter of a measured contrast causes alone, as AdaptiveSchedule computes
+/// it after the set-up in which half of the runs end. `looks`: how often the contrast is measured in each set-up. A
 /// measurement averages `contrast_frames`, or the frames of a presentation if presentations have contrasts of their
-/// own. The noise is that of the sensor's file: its fixed pattern, and its temporal noise averaged over these frames.
+/// own. The noise comes from the sensor's file: fixed pattern, and temporal noise averaged over these frames.
 [[nodiscard]] double contrast_half_width(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
                                          const std::vector<int>& looks, double slope);
 

@@ -19,7 +19,7 @@ namespace todbench {
 /// Uncertainty of ln acuity that a measurement will state.
 struct ExpectedUncertainty {
   double se = 0;               ///< standard error from the finite trials
-  double interval_factor = 0;  ///< half-width of their 95 % interval over its standard error
+  double interval_factor = 0;  ///< half-width of the 95 % interval of the trials, divided by `se`
   std::optional<double> degrees_of_freedom{};
   JoinedUncertainty stated{};  ///< rows of the budget that the trials do not reduce
 };
@@ -37,12 +37,13 @@ struct DecisionChances {
   double pass = 0, fail = 0, inconclusive = 0;
 };
 
-/// Returns the probabilities of the decisions for a camera whose ln acuity exceeds that of the limit by
+/// Returns the probabilities of the decisions for a camera whose ln acuity exceeds the limit's ln acuity by
 /// `ln_over_limit`. The estimate is normal with the standard error of the trials joined with the stated rows. The
-/// stated standard error of the trials scatters as chi over its degrees of freedom. The interval is that of judge():
-/// the larger of the statistical half-width and the half-width of all rows. Without stated rows, the probability of a
-/// pass is that of a noncentral t. Integrated over 200 quantiles of the chi-square distribution: errors below 0.001. A
-/// conditional decision counts as inconclusive. Precondition: se > 0, interval_factor > 0.
+/// stated standard error of the trials scatters as chi over its degrees of freedom. The interval is computed as in
+/// judge(): the larger of the statistical half-width and the half-width of all rows. Without stated rows, the
+/// probability of a pass follows from a noncentral t distribution. Integrated over 200 quantiles of the chi-square
+/// distribution: errors below 0.001. A conditional decision counts as inconclusive. Precondition: se > 0,
+/// interval_factor > 0.
 [[nodiscard]] DecisionChances decision_chances(double ln_over_limit, const ExpectedUncertainty& expected,
                                                const LimitsPlan& limits);
 
@@ -52,13 +53,13 @@ struct DecisionChances {
 
 /// Decisions for a camera of a given acuity.
 struct CameraChance {
-  double over_limit_percent = 0;  ///< acuity of the camera over that of the limit, in percent above it
+  double over_limit_percent = 0;  ///< excess of the camera's acuity over the limit, in percent of the limit
   DecisionChances chances;
 };
 
 /// One number of frames or phases of the plan, one rate of its ramp, or one half-width of its adaptive schedule.
 struct DecisionDesign {
-  std::vector<int> frames{};             ///< per presentation, of every contrast or for each
+  std::vector<int> frames{};             ///< per presentation: one number for all contrasts, or one for each
   int phases = 0;                        ///< per set-up and contrast
   std::optional<double> ramp_k_per_s{};  ///< of a ramp, which has no phases
   /// Half-width at which an adaptive schedule ends, in percent.
@@ -68,7 +69,8 @@ struct DecisionDesign {
   double deciding_percent = 0;          ///< the same with the stated rows
   bool planned = false;                 ///< the choice of the plan
   std::vector<CameraChance> cameras{};  ///< -10 to +10 % in steps of 1 %
-  /// Of a unit of the fleet, if the plan states it: accepted and below the limit, not accepted and above it.
+  /// Probabilities for a unit of the fleet, if the plan states the fleet: accepted although it is below the limit
+  /// (consumer), and not accepted although it is above the limit (producer).
   std::optional<double> consumer_risk{}, producer_risk{};
 };
 
@@ -82,7 +84,7 @@ struct FloorRow {
 struct DecisionForecast {
   double delta_t_k = 0;
   double least_acuity_per_mrad = 0;
-  /// Acuity of the simulated sensor over that of the limit, in percent above it.
+  /// Excess of the simulated sensor's acuity over the limit, in percent of the limit.
   double expected_over_limit_percent = 0;
   double floor_percent = 0;                ///< half-width of all stated rows; 0: no budget
   double smallest_half_width_percent = 0;  ///< smallest_half_width_ln()
@@ -95,10 +97,11 @@ struct DecisionForecast {
 [[nodiscard]] double laboratory_time(Plan plan, const ExperimentInputs& inputs,
                                      const std::vector<double>& presentations);
 
-/// Forecasts every limit on acuity with a threshold: the plan itself; with graded answers 1 to 64 frames, otherwise a
-/// quarter to four times the phases, or of an adaptive schedule a quarter to four times the half-width, or of a ramp a
-/// quarter to four times the rate, at most the one that a stated lag of the plate allows. Errors: those of
-/// predict_plan() and curve_uncertainty().
+/// Forecasts every limit on acuity whose contrast has a threshold, for the plan and for its variants. Variants of an
+/// adaptive schedule have a quarter to four times the half-width. Variants of a ramp have a quarter to four times the
+/// rate, at most the rate that a stated lag of the plate allows. Other variants have 1 to 64 frames with graded
+/// answers, or a quarter to four times the phases with binary answers. Errors: those of predict_plan() and
+/// curve_uncertainty().
 [[nodiscard]] Result<std::vector<DecisionForecast>> decision_forecasts(const Plan& plan,
                                                                        const ExperimentInputs& inputs);
 
@@ -106,8 +109,9 @@ struct DecisionForecast {
 /// Errors: those of curve_uncertainty().
 [[nodiscard]] Result<std::vector<double>> floors_ln(const Plan& plan, const PlanPrediction& prediction);
 
-/// Returns the limits that the stated rows of the budget alone leave open, with their distance from a camera of the
-/// predicted acuity: without trials that scatter they are decided with less than `probability`. Empty: none.
+/// Returns a text about the limits that the stated rows of the budget leave open: even without scatter of the trials, a
+/// decision on them has a probability below `probability`. States the distance of the predicted acuity from each limit.
+/// Empty if there is no such limit.
 [[nodiscard]] std::string open_by_budget(const Plan& plan, const std::vector<ContrastPrediction>& contrasts,
                                          const CurveUncertainty* budget, double probability);
 

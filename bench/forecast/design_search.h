@@ -19,9 +19,9 @@ struct DesignRequest {
   /// Half-width of the 95 % interval of S75 from the trials at every contrast; 19 of 20 runs do not exceed it. Empty:
   /// the half-width of the plan as it is.
   std::optional<double> half_width_percent{};
-  /// If true, the design decides every limit on an acuity for a camera like the simulated one with a probability of 95
-  /// %; `half_width_percent` is not used. The half-width at every contrast is at most 10 %, and at most a third of the
-  /// equivalence margin if the plan states one.
+  /// If true, the design decides every limit on an acuity for a camera like the simulated sensor with a probability of
+  /// 95 %; `half_width_percent` is not used. The half-width at every contrast is at most 10 %, and at most a third of
+  /// the equivalence margin if the plan states one.
   bool decide = false;
 };
 
@@ -39,7 +39,7 @@ struct RampDesign {
   PricedDesign design;
   double lag_s = 0;  ///< of the plan, or assumed
   bool lag_is_stated = false;
-  bool meets = false;  ///< the request; if not, the design is that of all set-ups at the largest rate
+  bool meets = false;  ///< meets the request; if not, the design has all set-ups at the largest rate
 };
 
 struct BestDesign {
@@ -52,7 +52,7 @@ struct BestDesign {
   std::vector<double> dropped_contrasts_k{};
   /// Largest half-width at any contrast for the comparison with the twin, with `decide` and an equivalence margin.
   std::optional<double> equivalence_half_width_percent{};
-  /// Bench time of the best design whose contrasts settle, if the best one has a settling band.
+  /// Bench time of the best design whose contrasts settle, if `best` has a settling band.
   std::optional<double> settled_s{};
   /// The fastest ramp that meets the request; empty if the bench or the plan admits none.
   std::optional<RampDesign> ramp{};
@@ -64,11 +64,11 @@ struct BestDesign {
 /// plan, if the plan has fewer), three phases, and eight presentations per contrast. Mountings are taken in pairs of
 /// counterparts. The plate is located in fewer frames than planned if their noise is at most 0.15 % of the highest
 /// contrast. With `decide` and without an equivalence margin, contrasts without a limit are left out, except the
-/// highest one, which locates the plate. A ramp between the strongest and the weakest contrast is compared, at the
-/// fastest rate that meets the request, up to the one that the lag of the plate allows (0.1 s if the plan states none).
-/// It takes 10 to 1200 s in one direction. It is the best design if it is faster and the plan states the lag. Errors:
-/// `invalid_input` (no design examined meets the request; the message states the least half-width, or the rows of the
-/// budget that prevent the decision), predict_plan(), `interrupted`.
+/// highest contrast, which locates the plate. A ramp between the strongest and the weakest contrast is compared, at the
+/// fastest rate that meets the request, up to the rate that the lag of the plate allows (0.1 s if the plan states
+/// none). The ramp takes 10 to 1200 s in one direction. The ramp is the best design if it is faster and the plan states
+/// the lag. Errors: `invalid_input` (no design examined meets the request; the message states the least half-width, or
+/// the rows of the budget that prevent the decision), predict_plan(), `interrupted`.
 [[nodiscard]] Result<BestDesign> best_design(const Plan& plan, const ExperimentInputs& inputs,
                                              const DesignRequest& request, std::stop_token stop);
 

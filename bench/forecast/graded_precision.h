@@ -11,13 +11,13 @@ struct GradedDesignFigures {
   /// Share of the sensor in the variance of the noise that decides an answer; the rest is the observer's.
   double sensor_share = 0;
   double pattern_share = 0;  ///< share of the sensor's fixed pattern in the same variance, part of sensor_share
-  double noise = 0;          ///< that decides an answer at the threshold, over the contrast of the target
+  double noise = 0;          ///< noise that decides an answer at the threshold, over the contrast
   double size_pitch = 4;     ///< at the threshold
   int frames = 1;            ///< per presentation
   int draws = 32;            ///< draws of the observer's noise, per frame
   int set_ups = 8;           ///< plates times mountings
-  /// Number of set-ups by their shares of the information, (sum)^2 / sum of squares; 0: equal shares. It determines
-  /// whether set-ups are the clusters of the interval (clustered_variance.h).
+  /// Effective number of set-ups, from their shares of the information: (sum)^2 / sum of squares; 0: equal shares. It
+  /// determines whether set-ups are the clusters of the interval (clustered_variance.h).
   double informative_set_ups = 0;
   int presentations = 96;        ///< per contrast
   double noise_correlation = 0;  ///< lag-1 correlation of the sensor's temporal noise, 0 to 1
@@ -25,16 +25,16 @@ struct GradedDesignFigures {
 };
 
 /// Returns the variance of graded answers over that of binary answers. It contains the noise of the sensor averaged
-/// over frames, that of the observer averaged over draws, and set-up terms of phases, contrast and registration:
+/// over frames, the noise of the observer averaged over draws, and set-up terms of phases, contrast and registration:
 ///
 ///   (f - g) / F + (1 - f) / (F D) + r + g n s,   f = (3/4)^2 (Phi2(z, z; share) - (2/3)^2) / (p (1 - p)),
 ///   p = 3/4 = 1/4 + 3/4 Phi(z)
 ///
 /// f is the share of the sensor's noise in an answer at the threshold. The answer is right by luck in a quarter of the
-/// cases and otherwise by a Gaussian decision variable; Phi2 is the probability that both of two answers to the same
-/// frame are right by it. g is the share of the fixed pattern, which frames do not average. The n phases of a triangle
-/// of size S average it only if they move the triangle across its detectors: s = 1.5 exp(-(1.9 / S)^2), S in pitches.
-/// 1.5 applies to set-ups that place triangles on the same detectors (both numbers from 78 runs of
+/// cases and otherwise by a Gaussian decision variable; Phi2 is the probability that this variable makes two answers to
+/// the same frame right. g is the share of the fixed pattern, which frames do not average. The n phases of a triangle
+/// of size S average the pattern only if they move the triangle across its detectors: s = 1.5 exp(-(1.9 / S)^2), S in
+/// pitches. 1.5 applies to set-ups that place triangles on the same detectors (both numbers from 78 runs of
 /// `graded_coverage_study` with a pattern of 0.1 K). r is 0.048 over the number of phases, at most 0.15, if the
 /// mountings cancel the phases (five set-ups or more; 138 runs of 12 phases and 11 of 3 of `graded_coverage_study`).
 /// With fewer set-ups the phases do not cancel: 0.28 / (1 + (noise / 0.13)^2), because noise hides the place of a
@@ -50,13 +50,13 @@ struct GradedDesignFigures {
 /// 1 + g (n s - 1), plus the covariances of successive presentations.
 [[nodiscard]] double pattern_inflation(const GradedDesignFigures& design);
 
-/// Returns the variance of ln of the ratio of camera and twin by common phases, over the variance of as many binary
-/// answers. The phases are common and cancel. What remains is the noise of the camera's frames with its fixed pattern,
-/// the observer's noise, and the noise of the twin's answers, each the mean of `twin_draws` own frames. It does not
-/// contain the scatter of the effective contrast.
+/// Returns the variance of the ln ratio of camera and twin by common phases, over the variance of as many binary
+/// answers. The phases are common and cancel. The remaining terms are the noise of the camera's frames with its fixed
+/// pattern, the observer's noise, and the noise of the twin's answers, each the mean of `twin_draws` own frames. The
+/// variance does not contain the scatter of the effective contrast.
 [[nodiscard]] double paired_variance_ratio(const GradedDesignFigures& design, int twin_draws);
 
-/// Frames per presentation that are compared and chosen from.
+/// Choices for the number of frames per presentation.
 inline constexpr std::array frame_choices{1, 2, 4, 8};
 
 /// Returns the smallest of `frame_choices` whose variance times the time of a presentation is within 10 % of the
@@ -64,14 +64,15 @@ inline constexpr std::array frame_choices{1, 2, 4, 8};
 /// around its minimum, so the smaller number costs little.
 [[nodiscard]] int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s);
 
-/// Returns the half-width of a 95 % interval of ln S75 over its standard error (Student's t), times the factor that
-/// 95 % of runs stay below: a variance from few set-ups scatters as chi-square over its degrees of freedom. From five
-/// set-ups on it includes 1.06, the root of the chance share of detectors common to set-ups (clustered_variance.h).
+/// Returns the half-width of a 95 % interval of ln S75 over its standard error: Student's t times
+/// graded_likely_excess(). This factor covers 95 % of runs, because a variance from few set-ups scatters as chi-square
+/// over its degrees of freedom. From five set-ups on the result includes 1.06, the root of the chance share of
+/// detectors common to set-ups (clustered_variance.h).
 [[nodiscard]] double graded_interval_factor(const GradedDesignFigures& design);
-/// Returns the ratio of an estimated standard error to the true one that 19 of 20 estimates with these degrees of
-/// freedom do not exceed.
+/// Returns the ratio of estimated to true standard error that 19 of 20 estimates with these degrees of freedom do not
+/// exceed.
 [[nodiscard]] double likely_excess_of_error(double degrees_of_freedom);
-/// Returns the part of graded_interval_factor() that 19 of 20 runs stay below: the half-width over its mean square.
+/// Returns the factor of graded_interval_factor() for unlucky runs: likely_excess_of_error() with graded_freedom().
 [[nodiscard]] double graded_likely_excess(const GradedDesignFigures& design);
 /// Returns the degrees of freedom of the variance of graded answers.
 [[nodiscard]] double graded_freedom(const GradedDesignFigures& design);

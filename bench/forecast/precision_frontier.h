@@ -21,18 +21,19 @@ struct PrecisionChoice {
   bool planned = false;  ///< true for the plan itself
   /// The graded choice with the smallest squared half-width times the seconds of the bench (without a camera, of the
   /// simulation), so that the load of the computer changes no recommendation. The half-width contains the rows of the
-  /// budget, which frames do not reduce; with such rows, the fastest choice within 5 % of the smallest product.
+  /// budget, which frames do not reduce; with these rows, the recommended choice is the fastest within 5 % of the
+  /// smallest product.
   bool recommended = false;
 };
 
-/// Returns the plan with the number of phases of the camera for the simulation too, if the plan has a camera.
+/// Returns the plan with the camera's number of phases also for the simulation, if the plan has a camera.
 /// predict_plan() then predicts the curve of the camera.
 [[nodiscard]] Plan as_measured(Plan plan);
 
-/// Returns the choices for the camera's curve, if there is one: binary answers, and graded ones with 1, 2, 4 and 8
+/// Returns the choices for the camera's curve, if there is one: binary answers, graded answers with 1, 2, 4 and 8
 /// frames, and the plan's own numbers (with_frames()) if they differ. Half-widths come from predict_plan(), times from
-/// predict_times() (1 and 2 frames are timed, the others follow). Of a ramp only the plan's own choice, because other
-/// frames would change its rate. Errors: as there.
+/// predict_times() (1 and 2 frames are timed, the others follow). For a ramp, returns only the plan's own choice,
+/// because other numbers of frames would change its rate. Errors: those of predict_plan() and predict_times().
 [[nodiscard]] Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
                                                                       std::stop_token stop);
 

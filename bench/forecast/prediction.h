@@ -16,9 +16,9 @@ namespace todbench {
 struct ContrastPrediction {
   double delta_t_k = 0;
   std::optional<double> s75_mrad;  ///< of the first tier; empty: no threshold is expected
-  /// Half-width of the 95 % interval of S75 from the trials, binary or graded as planned (graded_precision.h), which
-  /// 95 % of runs do not exceed. Adaptive schedule: the requested one, or the one its cap allows. Empty: not
-  /// identified.
+  /// Half-width of the 95 % interval of S75 from the trials, binary or graded as planned (graded_precision.h), which 95
+  /// % of runs do not exceed. For an adaptive schedule, the requested half-width, or the half-width that its cap
+  /// allows. Empty: not identified.
   std::optional<double> uncertainty_percent;
   double trials = 0;  ///< of the simulation
   /// Expected standard error of ln S75, without the margin for unlucky runs of `uncertainty_percent`; 0: not
@@ -27,14 +27,14 @@ struct ContrastPrediction {
   /// Half-width of the 95 % interval of ln S75 over its own standard error.
   double interval_factor = 0;
   std::optional<double> degrees_of_freedom{};  ///< of that standard error; empty: infinite
-  /// Half-width of ln S75 that the scatter of the measured contrast makes alone; more presentations do not reduce it.
+  /// Half-width of ln S75 that the scatter of the measured contrast causes alone; more presentations do not reduce it.
   /// It is part of the half-width above.
   double contrast_half_width = 0;
-  /// Half-width at which an adaptive schedule is expected to stop, in percent; empty: another schedule, or it does not
-  /// get there.
+  /// Half-width at which an adaptive schedule is expected to stop, in percent; empty for another schedule, or if it is
+  /// not expected to stop before its cap.
   std::optional<double> stopped_at_percent{};
-  /// Standard error of ln of the ratio of camera and twin by common phases, with the same margin as
-  /// `uncertainty_percent`; empty: the plan makes no pairs.
+  /// Standard error of the ln ratio of camera and twin by common phases, with the same margin as `uncertainty_percent`;
+  /// empty: the plan makes no pairs.
   std::optional<double> paired_se_ln_ratio{};
 };
 
@@ -44,16 +44,16 @@ struct PlanPrediction {
   std::vector<std::string> warnings;  ///< one sentence each
 };
 
-/// Returns the plan with all numbers of frames per presentation. If the plan leaves one open and takes graded answers,
-/// it becomes the smallest of 1, 2, 4 and 8 whose variance (graded_precision.h) times the time of a presentation
-/// (bench_time()) is within 10 % of the minimum, or four if no time or no threshold is predicted. Binary answers get
-/// one frame.
+/// Returns the plan with all numbers of frames per presentation. If the plan leaves a number open and uses graded
+/// answers, the number becomes the smallest of 1, 2, 4 and 8 whose variance (graded_precision.h) times the time of a
+/// presentation (bench_time()) is within 10 % of the minimum, or four if no time or no threshold is predicted. Binary
+/// answers get one frame.
 [[nodiscard]] Plan with_frames(Plan plan, const ExperimentInputs& inputs);
 
 /// Predicts a plan in two milliseconds, without simulation or reading of files. `inputs`: those of the plan
 /// (experiment_inputs()). Errors: `invalid_input` (the tolerance cannot be met within the hard caps; the message states
-/// the possible tolerance and its time). A contrast without a threshold has no uncertainty, and then the plan has none;
-/// a warning names it.
+/// the possible tolerance and its time). A contrast without a threshold has no uncertainty, and the plan then has no
+/// uncertainty either; a warning names the contrast.
 [[nodiscard]] Result<PlanPrediction> predict_plan(const Plan& plan, const ExperimentInputs& inputs);
 
 /// Adds the times to a prediction of the same plan: predict_time() (bench/forecast/time_prediction.h) and bench_time()
@@ -64,8 +64,8 @@ struct PlanPrediction {
 /// Returns the number of triangles of all plates.
 [[nodiscard]] double triangles_of(const std::vector<TargetPlate>& plates);
 
-/// Returns the presentations that an adaptive schedule is expected to show at each of these contrasts; empty for
-/// another schedule, which shows its list.
+/// Returns the presentations that an adaptive schedule is expected to show at each of these contrasts; empty for a
+/// schedule that lists its presentations.
 [[nodiscard]] std::vector<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                          const std::vector<ContrastPrediction>& contrasts);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bench time and half-width of a ramp beside those of settled contrasts.
+// Comparison of a ramp with settled contrasts: bench time and half-width.
 #pragma once
 
 #include <limits>
@@ -14,8 +14,8 @@ namespace todbench {
 /// Settling band whose intervals are studied, in percent of the contrast.
 inline constexpr double studied_band_percent = 10;
 
-/// Largest rate of a ramp at `from_k`, in K/s, at which a lag of the plate changes the contrast between large and small
-/// triangles by at most 0.6 %: S75 then moves by 0.3 % (a ramp at 0.23 K). Infinite without a lag.
+/// Returns the largest rate of a ramp at `from_k`, in K/s, at which a lag of the plate changes the contrast between
+/// large and small triangles by at most 0.6 %: S75 then moves by 0.3 % (a ramp at 0.23 K). Infinite without a lag.
 [[nodiscard]] double largest_ramp_rate(double from_k, double lag_s);
 
 /// Time and precision of one way to measure the contrasts of a plan.
@@ -36,8 +36,8 @@ struct RampComparison {
 /// Compares a ramp with settled contrasts; empty for other plans. Errors: predict_plan().
 [[nodiscard]] Result<std::optional<RampComparison>> compare_ramp(const Plan& plan, const ExperimentInputs& inputs);
 
-/// Returns a sentence if settled contrasts are as fast as the ramp of a plan, or if its rate is too high for the lag of
-/// the plate; otherwise, or if nothing can be predicted, an empty one.
+/// Returns a sentence if settled contrasts are as fast as the ramp of a plan, or if the rate of the ramp is too high
+/// for the lag of the plate; otherwise, or without a prediction, an empty text.
 [[nodiscard]] std::string ramp_advice(const Plan& plan, const ExperimentInputs& inputs);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Precision of the fit over a ramp, and what the ramp takes beside settled contrasts.
+// Precision of the fit over a ramp, as an equivalent number of presentations at each contrast.
 #pragma once
 
 #include <span>
@@ -9,21 +9,21 @@
 
 namespace todbench {
 
-/// What a presentation at one contrast tells of S75, in any unit.
+/// Information of a presentation at one contrast about S75, in any unit.
 struct ContrastInformation {
   double delta_t_k = 0;
   double information = 0;     ///< weight of its answers in the fit
-  double variance_ratio = 1;  ///< variance of a graded answer over that of a binary one
+  double variance_ratio = 1;  ///< variance of a graded answer over the variance of a binary answer
 };
 
 /// Returns, for each of `points`, the number of presentations in a set-up at this contrast alone that determine S75 as
 /// well as the fit of a ramp does (RampFit), at least 1. `shown_k`: contrasts of the presentations of a set-up. Between
-/// the points, information and ratio are geometric means; beyond them they are constant. Precondition: `points` and
-/// `shown_k` are not empty, information > 0, ratios > 0.
+/// the points, the logarithms of information and ratio are interpolated linearly; beyond them they are constant.
+/// Precondition: `points` and `shown_k` are not empty, information > 0, ratios > 0.
 [[nodiscard]] std::vector<double> equal_presentations(std::span<const ContrastInformation> points,
                                                       std::span<const double> shown_k, const ContrastNoise& noise);
 
-/// Returns, for each of `points_k`, the number of presentations that are nearest to it, by ratio.
+/// Returns, for each of `points_k`, the number of presentations whose contrast is nearest to this point, by ratio.
 [[nodiscard]] std::vector<int> nearest_presentations(std::span<const double> points_k, std::span<const double> shown_k);
 
 }  // namespace todbench

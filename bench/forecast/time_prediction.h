@@ -12,7 +12,7 @@ namespace todbench {
 /// Computing times of a plan.
 struct TimePrediction {
   double simulation_s = 0;  ///< computing time of the simulated sensor with its direct estimate, on one core
-  double measuring_s = 0;   ///< computing time for a camera; add that of its bench (bench/forecast/bench_time.h)
+  double measuring_s = 0;   ///< computing time for a camera, without bench time (bench/forecast/bench_time.h)
 };
 
 /// Measures the time of each kind of work once with the plan's sensor, plates and observer (a picture, a frame, a

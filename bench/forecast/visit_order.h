@@ -17,8 +17,8 @@ struct NumberedSetUp {
 /// Returns the set-ups of a plan, plate by plate.
 [[nodiscard]] std::vector<NumberedSetUp> numbered_set_ups(const Plan& plan, std::size_t plates);
 
-/// The visits of AdaptiveSchedule if all set-ups are equally informative. The next visit is the one with the lowest
-/// price: the time of its changes and presentations, times n + 1 for a set-up that was visited n times.
+/// Order of the visits of AdaptiveSchedule if all set-ups are equally informative. The next visit goes to the set-up
+/// with the lowest price: the time of its changes and presentations, times n + 1 for a set-up that was visited n times.
 class VisitOrder {
  public:
   /// `set_ups`: at least one.
