@@ -31,14 +31,14 @@ struct ExperimentListener {
   std::function<void(std::string_view phase)> on_phase{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
   std::function<void(std::string_view sentence)> on_note{};
-  /// The camera is lost and awaited for at most `patience` (0 in a replay); also reported as a note.
+  /// The camera is lost, and the run waits for it for at most `patience` (0 in a replay). Also reported as a note.
   std::function<void(const SourceInfo& camera, std::chrono::milliseconds patience)> on_lost{};
   /// Called while the run waits for the target, and with an empty value when the wait ends.
   OnTargetWait on_wait{};
   /// The session folder exists and contains the plan.
   std::function<void(const std::filesystem::path& folder)> on_session{};
   std::function<void(const SourceInfo&)> on_open{};
-  /// Every frame of the camera as it arrives, valid or not; not those of the twin.
+  /// Every frame of the camera as it arrives, valid or not. Not called for frames of the twin.
   std::function<void(const Frame&)> on_frame{};
   std::function<void(SessionCurve, const SetUpRecord&)> on_set_up{};
   /// A trial that is on disk, and its judged patch, valid during the call.
@@ -63,7 +63,7 @@ struct ExperimentOutcome {
   std::optional<CameraMeasures> measures{};       ///< physical; of the camera or of the simulated sensor alone
   std::optional<CameraMeasures> twin_measures{};  ///< of the twin
   SensorPlan effects;                             ///< of the simulated sensor
-  std::optional<DisplayRecord> at_display{};      ///< beside the results; at_display()
+  std::optional<DisplayRecord> at_display{};      ///< thresholds at the operator's display; at_display()
   RunFigures figures;                             ///< of `curve`
   double twin_s = 0;                              ///< of the simulation of `twin`
   std::optional<TimeForecast> forecast{};         ///< made before the first presentation; as Provenance::forecast

@@ -44,12 +44,13 @@ struct FittedTrials {
                                            const std::map<double, double>& shown_delta_t_k, const TodCurve* known,
                                            std::stop_token stop);
 
-/// Gives the curve the fit over all contrasts of a ramp. Returns its finding; notes and errors go to `said`.
+/// Sets the curve to the fit over all contrasts of a ramp. Returns the findings of the ramp; notes and errors go to
+/// `said`.
 [[nodiscard]] std::vector<AdequacyFinding> take_ramp_of(TodCurve& curve, TwinShapesOutcome& said,
                                                         const MeasurementResult& run, const FittedTrials& fitted,
                                                         const Plan& plan);
 
-/// Tests every point, and adds the finding that concerns all of them.
+/// Tests every point, and adds the findings `of_all`, which concern all points.
 void examine_all(TodCurve& curve, const Plan& plan, const std::vector<AdequacyFinding>& of_all);
 
 /// Reports that a complete run is now fitted with the functions of the simulated sensor.
@@ -66,15 +67,15 @@ void keep_shape(MeasurementResult& result, const TwinShapesOutcome& outcome, con
 struct FittedCurve {
   TodCurve curve;
   TwinShapesOutcome said;
-  std::optional<TodCurve> by_twin{};   ///< with the function of the twin, if `curve` has that of the surrogate
+  std::optional<TodCurve> by_twin{};   ///< with the function of the twin, if `curve` has the surrogate's
   std::map<double, double> model_u{};  ///< by set contrast, if the pictures contradict the model
 
   [[nodiscard]] const TodCurve& functions_of_twin() const { return by_twin ? *by_twin : curve; }
 };
 
-/// Starts the fit on its own thread. An effective contrast that differs by more than 2 % from the set one needs its own
-/// function of the twin, which takes a second. Borrowed objects outlive the task. `functions`: null if the adaptive
-/// schedule already computed them (`measured.functions`).
+/// Starts the fit on its own thread. An effective contrast that differs by more than 2 % from the set contrast needs
+/// its own function of the twin, which takes a second. Borrowed objects outlive the task. `functions`: null if the
+/// adaptive schedule already computed them (`measured.functions`).
 [[nodiscard]] std::unique_ptr<BackgroundTask<FittedCurve>> fit_in_background(
     TodCurve curve, const MeasuredRun& measured, const FittedTrials& to_fit, const Plan& plan,
     const ExperimentInputs& inputs, BackgroundTwinFunctions* functions, const CameraSurrogate& surrogate);

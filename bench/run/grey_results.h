@@ -27,7 +27,7 @@ struct GreySummary {
   /// Root mean square over the frames. It does not decrease with the number of frames, because frames share fixed
   /// pattern and rounding.
   double relative_uncertainty = 0;
-  double noise_steps = 0;  ///< the lowest of any frame
+  double noise_steps = 0;  ///< smallest value of all frames
 };
 /// Returns the summary of the frames of one contrast.
 [[nodiscard]] GreySummary grey_summary(const std::vector<GreyFrame>& frames, double set_delta_t_k);

@@ -13,9 +13,9 @@
 
 namespace todbench {
 
-/// Measures with the bench after the trials; `options` are those of the trials, the plates those of `inputs`. For a
-/// measure that cannot be taken, the result contains a reason and the session a note. Empty: the plan requests none.
-/// Errors: `interrupted`.
+/// Measures with the bench after the trials; `options` are the options of the trials; the plates come from `inputs`.
+/// For a measure that cannot be taken, the result contains a reason and the session a note. Empty: the plan requests
+/// none. Errors: `interrupted`.
 [[nodiscard]] Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan,
                                                                       const MeasurementOptions& options,
                                                                       const ExperimentInputs& inputs,
@@ -28,11 +28,11 @@ namespace todbench {
                                                                        const ExperimentInputs& inputs,
                                                                        const OpenSession& open, std::stop_token stop);
 
-/// Call of simulated_measures() on its own thread. The measures depend on the plan alone, and a measuring camera leaves
-/// processor time. With a program in place of the sensor, the call begins at take().
+/// Call of simulated_measures() on its own thread. The measures depend on the plan alone, and the processor is partly
+/// idle while the camera measures. With a program in place of the sensor, the call begins at take().
 class BackgroundMeasures {
  public:
-  /// Starts, unless the sensor is a program; `loaded` and `inputs` outlive it.
+  /// Starts the thread, unless the sensor is a program. `loaded` and `inputs` outlive this object.
   BackgroundMeasures(const LoadedPlan& loaded, const ExperimentInputs& inputs);
   /// Waits for the measures and emits their notes.
   [[nodiscard]] Result<std::optional<CameraMeasures>> take(const OpenSession& open, std::stop_token stop);

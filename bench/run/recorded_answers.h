@@ -15,8 +15,8 @@
 
 namespace todbench {
 
-/// Version of the questions of a measurement and their order. A recording states its version; another one is not
-/// replayed.
+/// Version of the questions of a measurement and their order. A recording states its version; a recording of another
+/// version is not replayed.
 inline constexpr std::string_view answers_format = "2";
 
 /// Returns the record of the time of the clock.

@@ -19,7 +19,7 @@ struct StreamHeader;
 /// Returns the path of the recording of a session.
 [[nodiscard]] std::filesystem::path recorded_frames(const std::filesystem::path& session);
 
-/// Starts recording: appends all inputs of the measurement beyond the plan to the recording of the session: frames,
+/// Starts recording. Appends all inputs of the measurement beyond the plan to the recording of the session: frames,
 /// failures, reports of the target and answers of the host, each with its question. At the end, the returned writer
 /// reports whether the recording is complete on disk. Errors: `io`.
 [[nodiscard]] Result<std::shared_ptr<FrameStreamWriter>> record_bench(OpenedBench& bench,
@@ -32,9 +32,9 @@ struct RecordedBench {
 };
 
 /// Opens the bench of a session's recording. A measurement with the same questions in the same order receives the same
-/// answers, bit for bit; otherwise it fails with `invalid_input`. `pause`: lets the replay pause; null: it never
-/// pauses; outlives the bench. Errors: `invalid_input` (no recording in the session, not one of a measurement, or
-/// another format of answers), `io`.
+/// answers, bit for bit; otherwise it fails with `invalid_input`. `pause` lets the replay pause and outlives the bench;
+/// with null the replay never pauses. Errors: `invalid_input` (no recording in the session, not one of a measurement,
+/// or another format of answers), `io`.
 [[nodiscard]] Result<RecordedBench> open_recorded_bench(const std::filesystem::path& session, const Pause* pause);
 
 }  // namespace todbench

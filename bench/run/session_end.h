@@ -36,7 +36,7 @@ void note_failed_selftest(const OpenSession& open, const Provenance& provenance)
 [[nodiscard]] Result<void> close_session(const OpenSession& open, const Provenance& provenance, const Verdict& verdict,
                                          const std::optional<Error>& ended_by);
 
-/// Last step of every run with a curve: judges it and writes results, state, report and manifest. If a write fails, the
+/// Concludes a run with a curve: judges the curve and writes results, state, report and manifest. If a write fails, the
 /// session ends early: files that do not fit are left out, and the caller still receives the results.
 [[nodiscard]] ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const OpenSession& open,
                                           const Provenance& provenance);

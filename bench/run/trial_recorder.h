@@ -14,8 +14,8 @@
 namespace todbench {
 
 /// Measures as measure() does, and writes trials and presentations one by one. A disk error stops the run with `io`;
-/// then the trials on the disk count. `kept`: binary keeps only the answers to the first frame of each presentation.
-/// Presentations of a simulated scene have no host time, in the result and on the disk.
+/// the result then contains only the trials on the disk. `kept`: binary keeps only the answers to the first frame of
+/// each presentation. Presentations of a simulated scene have no host time, in the result and on the disk.
 [[nodiscard]] Result<MeasurementResult> record_trials(const OpenSession& open, OpenedBench& bench, Observer& observer,
                                                       TrialSchedule& schedule, const MeasurementOptions& options,
                                                       SessionCurve which, AnswerKind kept, std::stop_token stop);

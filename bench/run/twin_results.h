@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results of the simulated twin that are added to those of a camera: curve, comparison and physical measures.
+// Results of the simulated twin that are added to the results of a camera: curve, comparison and physical measures.
 #pragma once
 
 #include <stop_token>
