@@ -13,11 +13,11 @@
 
 namespace todbench {
 
-/// Computes the cost of each factor by leaving it out, with direct estimates of draft accuracy (error about 1 %). Left
-/// out are: for sampling, half of the sample distance, at the same size on the display; for noise, all noise of the
-/// sensor; for the display, spot, veil and interpolation, with black at 0 and the largest contrast; for the eye, its
-/// own noise; for light, the luminance is a hundred times as high. Contrasts without a threshold are left out. Errors:
-/// `interrupted`; `invalid_input` if the plan or its sensor has modules.
+/// Computes the cost of each factor with direct estimates of draft accuracy (error about 1 %), from a variant without
+/// the factor. Sampling: half the sample distance, at the same size on the display. Noise: a sensor without noise.
+/// Display: no spot, veil and interpolation, black at 0 and the largest contrast. Eye: no noise of the eye. Observer
+/// without an eye: almost no blur and no internal noise. Light: a hundred times the luminance. Contrasts without a
+/// threshold are left out. Errors: `interrupted`; `invalid_input` if the plan or its sensor has modules.
 [[nodiscard]] Result<std::vector<AcuityLimits>> acuity_limits(const Plan& plan, const ExperimentInputs& inputs,
                                                               const std::vector<double>& delta_t_k,
                                                               std::stop_token stop);

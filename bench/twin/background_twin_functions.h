@@ -11,8 +11,8 @@
 
 namespace todbench {
 
-/// Returns precomputed functions as the argument `known` of fit_twin_shapes(): those of the contrasts of `curve` whose
-/// effective contrast is within 2 % of the set one.
+/// Returns precomputed functions as the argument `known` of fit_twin_shapes(): the functions at those contrasts of
+/// `curve` whose effective contrast is within 2 % of the set contrast.
 [[nodiscard]] TodCurve known_functions(const std::map<double, ProportionTable>& tables, const TodCurve& curve);
 
 /// Computation of the functions with 4000 draws per size and contrast, on the processor time that is free while the

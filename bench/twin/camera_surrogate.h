@@ -21,22 +21,23 @@ namespace todbench {
 /// this object.
 class CameraSurrogate {
  public:
-  /// `responses`: those of simulated_responses() for the twin.
+  /// `responses`: result of simulated_responses() for the twin.
   CameraSurrogate(const LoadedPlan& loaded, const ExperimentInputs& inputs, std::map<std::string, double> responses);
 
-  /// Returns the response of the plate through the camera's own optics, if they differ from those of the twin; for
+  /// Returns the response of the plate through the camera's own optics, if they differ from the twin's optics; for
   /// MeasurementOptions::learn_response. The test is chi-square with two degrees of freedom. Over all set-ups of the
-  /// plan, a camera identical to its twin fails it with a probability of 1 %.
+  /// plan, a camera identical to its twin fails the test with a probability of 1 %.
   [[nodiscard]] std::map<std::string, double> learn(const SetUpPicture& found);
 
   /// Returns the responses by which contrasts are divided.
   [[nodiscard]] const std::map<std::string, double>& responses() const { return responses_; }
   /// Returns the inputs with the surrogate in place of the twin. Empty if the frames of the camera agree with the twin,
-  /// whose function then remains in use. Noise differs if it is significant in a t test at 1 % and would change a
-  /// threshold by more than 0.05 %: NETD by 5 %, rows, columns and fixed pattern by 3 % of the variance of a pixel.
+  /// whose function then remains in use. Noise counts as different if the difference is significant in a t test at 1 %
+  /// and would change a threshold by more than 0.05 %: NETD by 5 %, rows, columns and fixed pattern by 3 % of the
+  /// variance of a pixel.
   [[nodiscard]] std::optional<ExperimentInputs> lent() const;
-  /// Returns whether the pictures of the camera contradict all optics of the kind of the twin, or whether their optics
-  /// do not give a valid sensor.
+  /// Returns whether the pictures of the camera contradict the optical model of the twin for all its parameters, or
+  /// whether the estimated optics do not give a valid sensor.
   [[nodiscard]] bool refused() const;
   /// Returns whether the frames could not be compared with the twin's optics: contrasts in grey levels, a program in
   /// the twin, or no triangle large enough.
@@ -46,8 +47,8 @@ class CameraSurrogate {
   [[nodiscard]] std::optional<CameraHalo> halo() const;
   /// Returns whether the frames do not confirm the function and the response: refused(), unseen() or a halo().
   [[nodiscard]] bool unconfirmed() const { return refused() || unseen() || halo(); }
-  /// Returns the logarithm of the estimated response over that of the twin, for the plate with the largest magnitude;
-  /// at least the share of halo().
+  /// Returns ln (estimated response / response of the twin) for the plate with the largest magnitude; at least the
+  /// share of halo().
   [[nodiscard]] double response_shift() const;
   /// Returns the record of the estimate; empty if no set-up could be evaluated.
   [[nodiscard]] std::optional<CameraOpticsRecord> record() const;
@@ -67,7 +68,7 @@ class CameraSurrogate {
   };
   [[nodiscard]] std::optional<Noise> noise() const;
   [[nodiscard]] bool noise_differs() const;
-  /// Whether a surrogate is needed.
+  /// Returns whether a surrogate is needed.
   [[nodiscard]] bool differs() const;
   [[nodiscard]] SensorSpec sensor(bool with_noise) const;
   void add_noise(const SetUpPicture& found);

@@ -34,7 +34,7 @@ struct DirectResults {
 void keep_direct(const DirectResults& direct, double pitch_mrad, TodCurve& curve);
 
 /// Replaces the thresholds of the planner's first tier, which are up to 6 % too low if noise limits the acuity, by
-/// direct estimates with a standard error of 0.4 %, or with the usual number of draws if 0.4 % needs too many.  A
+/// direct estimates with a standard error of 0.4 %, or with the usual number of draws if 0.4 % needs too many. A
 /// contrast without an estimate keeps its threshold. Errors: `interrupted`.
 [[nodiscard]] Result<void> refine_thresholds(ExperimentInputs& inputs, std::uint64_t seed, std::stop_token stop);
 

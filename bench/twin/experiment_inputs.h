@@ -40,7 +40,7 @@ struct ExperimentInputs {
 
 /// Compares the stated IFOV of the camera with pitch over focal length of the simulated sensor. Returns a sentence if
 /// they differ by 1 % or more; empty otherwise, and without a camera. Errors: `invalid_input` about the key if the
-/// value is off by a thousand.
+/// value is wrong by a factor of about a thousand.
 [[nodiscard]] Result<std::string> check_ifov(const Plan& plan, const SensorSpec& sensor);
 
 /// Loads the inputs and runs the planner once. If no contrast has a threshold, every effect is simulated, with a
@@ -54,11 +54,11 @@ struct ExperimentInputs {
 /// Sets the kind of answers by chosen_answers(); without this call they are binary.
 void take_answers(MeasurementOptions& options, const Plan& plan, const ExperimentInputs& inputs);
 
-/// Returns the options for the simulated sensor: those of the camera, without settling and corrections.
+/// Returns the options for the simulated sensor: the camera's options without settling and corrections.
 [[nodiscard]] MeasurementOptions simulated_options(const Plan& plan, const ExperimentInputs& inputs);
 
 /// Checks that all sizes fit into the picture and keep their distance from neighbours. Errors: `invalid_input` with up
-/// to three sizes that do not. Call it before the first calculation or movement.
+/// to three sizes that do not fit. Call it before the first calculation or movement.
 [[nodiscard]] Result<void> check_measured_geometry(const Plan& plan, const ExperimentInputs& inputs, cv::Size picture);
 /// Checks the same for the picture of the simulated sensor, and that it fits into the memory of this machine.
 [[nodiscard]] Result<void> check_simulated_geometry(const Plan& plan, const ExperimentInputs& inputs);

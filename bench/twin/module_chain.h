@@ -26,10 +26,10 @@ using ModuleLine = std::function<void(std::string_view line)>;
 /// Succeeds if there are no modules; otherwise `invalid_input`, because the calculation uses sensor and observer alone.
 [[nodiscard]] Result<void> refuse_modules(const Plan& plan, const SensorSpec& sensor);
 
-/// Returns the modules in the order of the chain. Simulated sensor: its own, including the sensor itself, then those of
-/// the plan. Camera: those of the plan.
+/// Returns the modules in the order of the chain. The simulated sensor has its own modules, including a program in
+/// place of the sensor, and then the modules of the plan. The camera has the modules of the plan.
 [[nodiscard]] std::vector<ModulePlan> picture_modules(const Plan& plan, const SensorSpec& sensor, Side side);
-/// Returns the modules that map a picture to a picture, ready for the first one; their errors occur during the run.
+/// Returns the modules that map a picture to a picture, ready for the first picture; their errors occur during the run.
 [[nodiscard]] std::vector<std::unique_ptr<ChainStage>> module_stages(const std::vector<ModulePlan>& modules,
                                                                      const ModuleLine& on_error_line);
 /// Returns the number of frames to discard after a change of the target. The numbers of frames that successive modules

@@ -16,12 +16,12 @@
 namespace todbench {
 
 /// Returns the function of the simulated sensor over size and contrast, for the contrasts of the plan and a quarter
-/// beyond. One table takes about a second. Errors: those of proportion_curves().
+/// beyond both ends. One table takes about a second. Errors: those of proportion_curves().
 [[nodiscard]] Result<ContrastSurface> contrast_surface(const Plan& plan, const ExperimentInputs& inputs,
                                                        std::stop_token stop);
 
 /// Returns the answers converted to their set contrasts: contrast c in place of c', size S exp(g(c) - g(c')), g the ln
-/// S75 of the surface. The set contrast is that which the camera observes behind the stated air.
+/// S75 of the surface. The set contrast is the contrast that the camera observes behind the stated air.
 [[nodiscard]] std::vector<Trial> at_set_contrasts(std::span<const Trial> trials, const ContrastSurface& surface,
                                                   double air_transmittance);
 
@@ -37,8 +37,9 @@ struct RampOutcome {
 [[nodiscard]] Result<RampOutcome> take_ramp(TodCurve& curve, const MeasurementResult& run,
                                             const ContrastSurface& surface, const Plan& plan);
 
-/// Returns ln S75 per unit of ln contrast for an error that small and large triangles do not share, which also changes
-/// the internal noise that the observer draws: the slope of the curve, at least 0.2.
+/// Returns the change of ln S75 per unit of ln contrast for an error of the contrast that small and large triangles do
+/// not share: the slope of the curve, at least 0.2. The minimum accounts for the internal noise that the observer
+/// draws, which this error changes too.
 [[nodiscard]] double sensitivity_to_lag(const ContrastSurface& surface, double delta_t_k);
 
 /// Numbers of contrasts of a ramp that were shown, and that were skipped because of a correction or another wait.

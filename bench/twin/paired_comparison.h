@@ -28,8 +28,8 @@ struct PairedCamera {
   const TodCurve& curve;  ///< fitted with the functions of the twin
   std::span<const Trial> trials;
   std::span<const SetUpRecord> set_ups;  ///< positions of its plates
-  /// Fit with the functions of the twin, if `curve` is fitted with those of the surrogate of the camera; null: `curve`
-  /// is that fit.
+  /// Fit with the functions of the twin, if `curve` is fitted with the functions of the camera's surrogate. Null:
+  /// `curve` is fitted with the functions of the twin.
   const TodCurve* by_twin = nullptr;
   /// By set contrast: standard uncertainty of ln S75 of a camera whose pictures contradict its model; null: none.
   const std::map<double, double>* model_u = nullptr;
@@ -48,9 +48,9 @@ struct PairedOutcome {
                                                std::uint64_t seed, std::stop_token stop);
 
 /// Shows the twin every presentation of the camera (twin_answers()) and adds the paired ratios (paired_ratio()) to the
-/// points of a comparison whose A is the camera's curve. A point keeps the unpaired ratio if it lacks a function of the
-/// twin or graded answers, or if the comparison does not contain it. If a threshold is not fit for a decision, the
-/// paired verdict is inconclusive too.
+/// points of a comparison whose A is the camera's curve. A point keeps the unpaired ratio if it has no function of the
+/// twin, no graded answers, or no point in the camera's curve. If a threshold is not fit for a decision, the paired
+/// verdict is inconclusive too.
 [[nodiscard]] PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& camera,
                                               const ExperimentInputs& inputs, const PairedTwinOptions& options);
 

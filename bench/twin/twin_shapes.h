@@ -26,8 +26,8 @@ namespace todbench {
 
 /// Draws per size of the functions: maximum (unless the accuracy needs more) and minimum.
 inline constexpr int twin_shape_draws = 4000, least_twin_shape_draws = 1000;
-/// Returns the draws for which the error of a function is a quarter of that of the answers, `se_ln_threshold`; this
-/// widens an interval by 3 %. Empty `se_ln_threshold`: unknown.
+/// Returns the draws for which the error of a function is a quarter of the error of the answers, `se_ln_threshold`.
+/// This widens an interval by 3 %. Empty `se_ln_threshold`: unknown.
 [[nodiscard]] int draws_of_twin_shape(std::optional<double> se_ln_threshold, const Accuracy& accuracy);
 
 /// Computes functions of the simulated sensor at the set contrasts of a plan, to fit answers while they arrive. The
@@ -44,7 +44,7 @@ inline constexpr int twin_shape_draws = 4000, least_twin_shape_draws = 1000;
                                                                         std::stop_token stop);
 
 /// Refits the points of a curve with the functions at their set contrasts. Points without a function keep their fit;
-/// graded ones are refitted as binary answers (fit_right_and_wrong()).
+/// graded points are refitted as binary answers (fit_right_and_wrong()).
 void fit_with_tables(TodCurve& curve, std::span<const Trial> trials, const std::map<double, ProportionTable>& tables,
                      const FitOptions& fit);
 
