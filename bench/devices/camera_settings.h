@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Settings read back from a camera: comparison with the written ones, and of the end of a run with its start.
+// Settings read back from a camera: comparison with the written settings, and of the end of a run with its start.
 #pragma once
 
 #include <map>

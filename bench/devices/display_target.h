@@ -44,7 +44,7 @@ struct DisplayTargetOptions {
 };
 
 /// Creates a target that draws on a monitor. Contrasts are differences of light around half of the maximum. Background
-/// and pattern are levels of an 8-bit screen; the pattern level is the one nearest to the contrast in light, and the
+/// and pattern are levels of an 8-bit screen; the pattern has the level nearest to the contrast in light, and the
 /// target reports the contrast that the two levels give. Mountings and sub-pixel shifts are drawn by exact area: a
 /// pixel has the level of the mean light over its area. After each picture the screen has to show the drawn levels,
 /// every pixel within half a level. Errors of present(): `invalid_input` (unknown plate, plate larger than the display,
@@ -67,9 +67,9 @@ struct DisplayLevels {
 [[nodiscard]] Result<std::unique_ptr<Target>> open_display_target(DisplayTargetOptions options,
                                                                   const std::string& command);
 
-/// Starts the program that shows pictures: a shell command, `todbench-gui --screen N --pictures` or one that follows
-/// the contract of modules (docs/reference/modules.md). The calling process has to ignore SIGPIPE. Exit codes: 2, the
-/// picture was refused (`invalid_input`); 4 and 127, no screen or no such program (`not_found`).
+/// Starts the program that shows pictures: a shell command, `todbench-gui --screen N --pictures` or a program that
+/// follows the contract of modules (docs/reference/modules.md). The calling process has to ignore SIGPIPE. Exit codes:
+/// 2, the picture was refused (`invalid_input`); 4 and 127, no screen or no such program (`not_found`).
 [[nodiscard]] Result<ShowLevels> shown_by_program(const std::string& command);
 
 }  // namespace todbench

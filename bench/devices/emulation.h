@@ -28,7 +28,7 @@ struct EmulationArguments {
   std::string sensor = "sc2000";                ///< name or file
   std::string interface_address = "127.0.0.1";  ///< IPv4 address of the interface of the camera
   std::string serial = "TB0001";                ///< serial number of the camera
-  /// All shipped.
+  /// Plates of the stage, by name or file. The default is all shipped plates.
   std::vector<std::string> plates{"tcat-a", "tcat-b", "edge", "bars", "apertures", "mrtd", "open", "tcat-c", "tcat-d"};
   double distance_m = 2;  ///< distance from camera to plate, or focal length of the collimator
   std::uint16_t black_body_port = 5025, stage_port = 5026;  ///< 0: the system chooses

@@ -27,8 +27,8 @@ struct AddedStages {
   std::function<std::vector<std::unique_ptr<ChainStage>>(const std::function<void(std::string_view line)>&)> make{};
   int dither = 1;         ///< n: the twin observes n x n positions within a pixel in turn, as the recorded stage did
   int memory_frames = 0;  ///< exposures of the twin that are discarded after a change of the target
-  /// Sets the options of the recorded run. They are required because a recording replays only the questions of that
-  /// run. The answers are then reduced to binary ones. Empty: no recorded run.
+  /// Sets the options of the recorded run. These options are required because a recording replays only the questions of
+  /// that run. The answers are then reduced to binary answers. Empty: no recorded run.
   std::function<void(MeasurementOptions& camera)> as_recorded{};
 };
 
@@ -49,7 +49,7 @@ struct ExperimentHost {
   CameraPatience camera_patience{};
   HostClocks clocks = host_clocks();
   AddedStages added{};
-  /// Changes or refuses the opened devices before the run, and returns the note of the session about that. Empty: the
+  /// Changes or refuses the opened devices before the run, and returns a note about this for the session. Empty: the
   /// devices are used as opened.
   std::function<Result<std::string>(OpenedBench& bench)> on_opened{};
 };

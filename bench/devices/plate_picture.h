@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Comparison of the mean picture of the plate with that of a sensor model at the same place.
+// Comparison of the mean picture of the plate with the picture of a sensor model at the same place.
 #pragma once
 
 #include "acquisition/base/result.h"

@@ -27,8 +27,8 @@ enum class ProcessedAs {
 [[nodiscard]] int samples_per_pixel(const std::vector<std::unique_ptr<ChainStage>>& stages);
 
 /// Returns `camera` with every complete frame passed through all stages in order; outputs are rounded to counts and
-/// clipped to their range. Incomplete frames are unchanged. next() returns the errors of a stage. The picture of the
-/// record is that of frame `picture_frame`, counted from 0.
+/// clipped to their range. Incomplete frames are unchanged. next() returns the errors of a stage. The record keeps the
+/// picture of frame `picture_frame`, counted from 0.
 [[nodiscard]] std::unique_ptr<FrameSource> processed_source(std::unique_ptr<FrameSource> camera,
                                                             std::vector<std::unique_ptr<ChainStage>> stages,
                                                             ProcessedAs as, std::size_t picture_frame,

@@ -18,8 +18,8 @@ struct StageMovement {
   std::string cause{};   ///< reason of a deviation, as a clause; empty: the stage moves correctly
 };
 
-/// Largest deviation of StageFit::seen_per_asked from the unit matrix, per element, plus four standard errors. Shifts
-/// of a run reach 0.7 px: a tenth of that costs less than 0.2 % of acuity.
+/// Largest accepted deviation of StageFit::seen_per_asked from the unit matrix, per element. The check adds four
+/// standard errors. Shifts of a run reach 0.7 px: an error of a tenth costs less than 0.2 % of acuity.
 inline constexpr double most_stage_deviation = 0.1;
 
 /// Opens camera and target of the plan, presents its first plate at its highest contrast in the centre, and moves the
