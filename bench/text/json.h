@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 /// Return the number; null if it is absent or not finite.
 [[nodiscard]] Json json_number(double value);
 [[nodiscard]] Json json_number(const std::optional<double>& value);
-/// Returns the list of the numbers, with null in place of those that are not finite.
+/// Returns the list of the numbers, with null in place of numbers that are not finite.
 [[nodiscard]] Json json_numbers(std::span<const double> values);
 /// Returns [low, high]; an open limit is null.
 [[nodiscard]] Json json_interval(const Interval& interval);
