@@ -15,7 +15,7 @@ namespace todbench {
 /// Options of the server.
 struct ControlServerOptions {
   ServeAddress address{};                      ///< address to listen on
-  std::string token{};                         ///< empty: a random one of 128 bits
+  std::string token{};                         ///< empty: a random token of 128 bits
   std::filesystem::path sessions = ".";        ///< folder in which session folders are created
   PlanPrograms programs = PlanPrograms::none;  ///< programs that a plan may start
   std::function<CameraRegistry::Listing()> list_cameras{};

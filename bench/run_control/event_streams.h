@@ -16,8 +16,9 @@
 
 namespace todbench {
 
-/// Every client receives the latest state of its run as soon as it has received the previous one; a slow client misses
-/// intermediate states. A client that receives no byte for 30 s is disconnected. Any thread.
+/// Streams of run states. Every client receives the latest state of its run as soon as it has received the previous
+/// state; a slow client misses intermediate states. A client that receives no byte for 30 s is disconnected. Any
+/// thread.
 class EventStreams {
  public:
   /// Returns the state of a run; empty: the state of the run is no longer stored.

@@ -63,10 +63,10 @@ class RunQueue {
   [[nodiscard]] std::optional<RunSnapshot> snapshot(const std::string& id) const;
   /// Returns the states of all runs, oldest first.
   [[nodiscard]] Json list() const;
-  /// Answers the request to the operator. `number`: of the request, empty: the current one. Errors: `not_found` (no
-  /// such run), `invalid_input` (no request, or another one).
+  /// Answers the request to the operator. `number` selects the request; empty selects the current request. Errors:
+  /// `not_found` (no such run), `invalid_input` (no request, or a request with another number).
   [[nodiscard]] Result<void> answer(const std::string& id, std::optional<std::uint64_t> number, OperatorAnswer answer);
-  /// Stops a run or removes it from the queue; no effect on a run that is over. Errors: `not_found` (no such run).
+  /// Stops a run or removes it from the queue. Has no effect on a run that is over. Errors: `not_found` (no such run).
   [[nodiscard]] Result<void> stop(const std::string& id);
   /// Returns the session folder; empty until it exists.
   [[nodiscard]] std::optional<std::filesystem::path> folder(const std::string& id) const;

@@ -35,7 +35,7 @@ struct RunRequest {
 /// Programs that a plan may start.
 enum class PlanPrograms {
   none,
-  modules,  ///< those of [[module]] in the plan or its sensor, and of a target of kind display
+  modules,  ///< programs of [[module]] in the plan or its sensor, and of a target of kind display
 };
 
 /// Run with its loaded plan.
