@@ -30,8 +30,8 @@ struct ChangedSetting {
   std::string feature, before, now;
 };
 
-/// Reads the settings of `at_start` again and returns the changed ones. Ignores temperatures of the camera, connection
-/// parameters and correction modes. Returns an empty list if the camera no longer answers.
+/// Reads the settings of `at_start` again and returns the changed settings. Ignores temperatures of the camera,
+/// connection parameters and correction modes. Returns an empty list if the camera no longer answers.
 [[nodiscard]] std::vector<ChangedSetting> changed_settings(FrameSource& camera, const SourceInfo& at_start);
 /// Returns "SensorGainMode was HighGain at the start and is LowGain at the end".
 [[nodiscard]] std::string sentence(const ChangedSetting& changed);

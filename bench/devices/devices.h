@@ -69,7 +69,8 @@ struct OpenedBench {
                                                           const OnTargetWait& on_wait = {});
 
 /// Creates a simulated sensor in front of a scene. `shown_delta_t_k`: set contrast -> contrast shown, so that a twin
-/// shows the contrasts that a camera observed; others are shown as set. `source`: options of simulated_source().
+/// shows the contrasts that a camera observed; other contrasts are shown as set. `source`: options of
+/// simulated_source().
 [[nodiscard]] OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model,
                                           const std::vector<TargetPlate>& plates, double distance_m,
                                           std::map<double, double> shown_delta_t_k, SceneMotion motion = {},

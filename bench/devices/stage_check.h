@@ -14,7 +14,7 @@ namespace todbench {
 /// Result of the check.
 struct StageMovement {
   double driven_px = 0;  ///< requested movement to either side of the centre, along each axis
-  StageFit fit;          ///< observed positions fitted to requested ones
+  StageFit fit;          ///< fit of the observed positions to the requested positions
   std::string cause{};   ///< reason of a deviation, as a clause; empty: the stage moves correctly
 };
 

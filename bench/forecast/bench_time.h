@@ -27,7 +27,7 @@ struct BenchTime {
   std::uint64_t plate_changes = 0, mounting_changes = 0, contrast_changes = 0, shift_changes = 0;
   /// Changes of one presentation run in parallel: black body and stage settle at the same time, and an operator brings
   /// another plate in the right mounting. So each presentation takes as long as its slowest change.
-  double changes_s = 0;  ///< including those of the physical measures
+  double changes_s = 0;  ///< including the changes of the physical measures
   /// Frames for registration, contrast, answers and physical measures, including frames discarded after a change.
   std::uint64_t frames = 0;
   /// Parts of `frames`: the frames that locate the plate and measure contrasts, and the frames of the presentations by

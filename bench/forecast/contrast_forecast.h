@@ -8,9 +8,9 @@
 
 namespace todbench {
 
-/// Returns the variance of effective_contrast() over that of a pixel of white noise: the mean over the reference
-/// triangles of the plate, each a median over its inside minus a median over its ring. 0 if no triangle is large
-/// enough.
+/// Returns the variance of effective_contrast() divided by the variance of a pixel, for white noise.
+/// effective_contrast() is the mean over the reference triangles of the plate, each a median over its inside minus a
+/// median over its ring. 0 if no triangle is large enough.
 [[nodiscard]] double contrast_variance_per_pixel(const TargetPlate& plate, double pixels_per_mm, double min_size_px);
 
 /// Returns d ln S75 / d ln contrast at each contrast of a prediction, as join_contrast_errors() computes it from a

@@ -65,9 +65,9 @@ struct DecisionDesign {
   /// Half-width at which an adaptive schedule ends, in percent.
   std::optional<double> asked_percent{};
   double bench_s = 0;                   ///< of the whole plan (laboratory_time())
-  double half_width_percent = 0;        ///< of the trials at the contrast of the limit, expected
-  double deciding_percent = 0;          ///< the same with the stated rows
-  bool planned = false;                 ///< the choice of the plan
+  double half_width_percent = 0;        ///< expected half-width of the trials at the contrast of the limit
+  double deciding_percent = 0;          ///< expected half-width including the stated rows
+  bool planned = false;                 ///< true for the plan itself
   std::vector<CameraChance> cameras{};  ///< -10 to +10 % in steps of 1 %
   /// Probabilities for a unit of the fleet, if the plan states the fleet: accepted although it is below the limit
   /// (consumer), and not accepted although it is above the limit (producer).

@@ -37,7 +37,7 @@ struct PricedDesign {
 /// Ramp over the contrasts of a plan.
 struct RampDesign {
   PricedDesign design;
-  double lag_s = 0;  ///< of the plan, or assumed
+  double lag_s = 0;  ///< lag of the plate, stated in the plan or assumed
   bool lag_is_stated = false;
   bool meets = false;  ///< meets the request; if not, the design has all set-ups at the largest rate
 };
@@ -59,10 +59,10 @@ struct BestDesign {
 };
 
 /// Searches mountings of each plate, phases, frames of each contrast, and whether the contrasts settle. The
-/// presentations are in the order of constant_stimuli(): fast changes run during slow ones, so no other nesting takes
-/// less time. A design has at least five set-ups, which the intervals of graded answers require (or as many as the
-/// plan, if the plan has fewer), three phases, and eight presentations per contrast. Mountings are taken in pairs of
-/// counterparts. The plate is located in fewer frames than planned if their noise is at most 0.15 % of the highest
+/// presentations are in the order of constant_stimuli(): fast changes run during slow changes, so no other nesting
+/// takes less time. A design has at least five set-ups, which the intervals of graded answers require (or as many as
+/// the plan, if the plan has fewer), three phases, and eight presentations per contrast. Mountings are taken in pairs
+/// of counterparts. The plate is located in fewer frames than planned if their noise is at most 0.15 % of the highest
 /// contrast. With `decide` and without an equivalence margin, contrasts without a limit are left out, except the
 /// highest contrast, which locates the plate. A ramp between the strongest and the weakest contrast is compared, at the
 /// fastest rate that meets the request, up to the rate that the lag of the plate allows (0.1 s if the plan states

@@ -24,8 +24,9 @@ struct GradedDesignFigures {
   double frames_between = 0;     ///< frames between two presentations
 };
 
-/// Returns the variance of graded answers over that of binary answers. It contains the noise of the sensor averaged
-/// over frames, the noise of the observer averaged over draws, and set-up terms of phases, contrast and registration:
+/// Returns the variance of graded answers divided by the variance of binary answers. It contains the noise of the
+/// sensor averaged over frames, the noise of the observer averaged over draws, and set-up terms of phases, contrast and
+/// registration:
 ///
 ///   (f - g) / F + (1 - f) / (F D) + r + g n s,   f = (3/4)^2 (Phi2(z, z; share) - (2/3)^2) / (p (1 - p)),
 ///   p = 3/4 = 1/4 + 3/4 Phi(z)

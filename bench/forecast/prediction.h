@@ -15,7 +15,7 @@ namespace todbench {
 /// Prediction of one contrast.
 struct ContrastPrediction {
   double delta_t_k = 0;
-  std::optional<double> s75_mrad;  ///< of the first tier; empty: no threshold is expected
+  std::optional<double> s75_mrad;  ///< from the planner's first tier; empty: no threshold is expected
   /// Half-width of the 95 % interval of S75 from the trials, binary or graded as planned (graded_precision.h), which 95
   /// % of runs do not exceed. For an adaptive schedule, the requested half-width, or the half-width that its cap
   /// allows. Empty: not identified.
@@ -26,7 +26,7 @@ struct ContrastPrediction {
   double se_ln_s75 = 0;
   /// Half-width of the 95 % interval of ln S75 over its own standard error.
   double interval_factor = 0;
-  std::optional<double> degrees_of_freedom{};  ///< of that standard error; empty: infinite
+  std::optional<double> degrees_of_freedom{};  ///< degrees of freedom of `se_ln_s75`; empty: infinite
   /// Half-width of ln S75 that the scatter of the measured contrast causes alone; more presentations do not reduce it.
   /// It is part of the half-width above.
   double contrast_half_width = 0;
@@ -46,11 +46,11 @@ struct PlanPrediction {
 
 /// Returns the plan with all numbers of frames per presentation. If the plan leaves a number open and uses graded
 /// answers, the number becomes the smallest of 1, 2, 4 and 8 whose variance (graded_precision.h) times the time of a
-/// presentation (bench_time()) is within 10 % of the minimum, or four if no time or no threshold is predicted. Binary
-/// answers get one frame.
+/// presentation (bench_time()) is within 10 % of the minimum. It becomes four if no time or no threshold is predicted.
+/// Binary answers use one frame.
 [[nodiscard]] Plan with_frames(Plan plan, const ExperimentInputs& inputs);
 
-/// Predicts a plan in two milliseconds, without simulation or reading of files. `inputs`: those of the plan
+/// Predicts a plan in two milliseconds, without simulation or reading of files. `inputs`: inputs of the plan
 /// (experiment_inputs()). Errors: `invalid_input` (the tolerance cannot be met within the hard caps; the message states
 /// the possible tolerance and its time). A contrast without a threshold has no uncertainty, and the plan then has no
 /// uncertainty either; a warning names the contrast.

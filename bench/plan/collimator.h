@@ -16,8 +16,8 @@ namespace todbench {
 /// returns `black_body_k`.
 [[nodiscard]] double seen_through_k(const Plan& plan, const SpectralBand& band, double black_body_k);
 
-/// Smallest accepted focal length, shorter than any collimator for a thermal camera. It detects a focal length stated
-/// in metres: 2 instead of 2000.
+/// Smallest accepted focal length, shorter than any collimator for a thermal camera. This limit detects a focal length
+/// stated in metres: 2 instead of 2000.
 inline constexpr double least_focal_length_mm = 10;
 
 /// Names of the rows that a collimator adds to a budget.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decision rules by name. The plan states one before the measurement.
+// Decision rules by name. The plan states its rule before the measurement.
 #pragma once
 
 #include <array>

@@ -44,7 +44,7 @@ struct DescribedObserver {
 /// Reads the keys of a [[module]] except `place`. Mistakes are recorded in the reader of the table.
 [[nodiscard]] ModulePlan read_module(TomlReader& table);
 
-/// Parse text that is already read; otherwise as the functions load_...().
+/// Parse text that is already read. Otherwise these functions behave like load_...().
 [[nodiscard]] Result<SensorSpec> parse_sensor(const Resource& resource);
 [[nodiscard]] Result<TemplateObserverSpec> parse_observer(const Resource& resource);
 /// Parses an observer with its optional [[module]] (at most one, with place observer), for callers that run it.

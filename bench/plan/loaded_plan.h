@@ -68,8 +68,8 @@ class LoadedPlan {
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
   [[nodiscard]] const std::vector<TargetPlate>& plates() const { return parts_.plates; }
-  /// Returns every plate that the target must be able to show: the plates of the trials, and those of the requested
-  /// measures (MTF, CTF, size-of-source effect, absolute temperatures, MRTD).
+  /// Returns every plate that the target must be able to show: the plates of the trials, and the plates of the
+  /// requested measures (MTF, CTF, size-of-source effect, absolute temperatures, MRTD).
   [[nodiscard]] std::vector<TargetPlate> shown_plates() const;
   [[nodiscard]] const TemplateObserverSpec& observer() const { return parts_.observer; }
   /// Returns the sensor with the microscan of the plan.
@@ -93,7 +93,7 @@ class LoadedPlan {
 /// Reads a plan and requires a camera id. Errors: `invalid_input` (also for a plan without a camera).
 [[nodiscard]] Result<LoadedPlan> read_camera_plan(std::string_view reference);
 
-/// Returns the plan with absolute paths of the files that it names; relative ones are relative to `folder`.
+/// Returns the plan with absolute paths of the files that it names; relative paths are relative to `folder`.
 [[nodiscard]] Plan with_absolute_references(Plan plan, const std::filesystem::path& folder);
 
 /// Fails if the observer has an eye but the plan has no display, or has a module in place of the observer.

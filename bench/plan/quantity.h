@@ -49,7 +49,7 @@ struct Quantity {
   [[nodiscard]] constexpr bool can_be_limited() const { return at_least.possible() || at_most.possible(); }
 };
 
-/// Returns all quantities; those with limits in the order of their demands.
+/// Returns all quantities. Quantities with limits are in the order of their demands.
 [[nodiscard]] std::span<const Quantity> quantities();
 /// Returns the quantity with this name; a place in brackets, "mtf_x (corner)", is ignored. Null if unknown.
 [[nodiscard]] const Quantity* find_quantity(std::string_view name);

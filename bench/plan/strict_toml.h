@@ -72,7 +72,7 @@ class TomlReader {
   void reject(std::string_view key, std::size_t index, const std::string& sentence);
 
   /// Succeeds if there was no mistake and every key of the document was read. Otherwise returns the first mistake by
-  /// line, unknown keys before missing ones (a misspelt key is usually both), as `invalid_input` with its key. Covers
+  /// line, unknown keys before missing keys (a misspelt key is usually both), as `invalid_input` with its key. Covers
   /// the whole document, whichever reader it is called on.
   [[nodiscard]] Result<void> finish() const;
 

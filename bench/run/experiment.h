@@ -60,14 +60,14 @@ struct ExperimentOutcome {
   std::optional<TodCurve> twin;  ///< simulated; with a measured curve only
   std::optional<Comparison> comparison;
   Verdict verdict;                                ///< same as verdict.json
-  std::optional<CameraMeasures> measures{};       ///< physical; of the camera or of the simulated sensor alone
+  std::optional<CameraMeasures> measures{};       ///< physical measures of the camera, or of a simulation alone
   std::optional<CameraMeasures> twin_measures{};  ///< of the twin
   SensorPlan effects;                             ///< of the simulated sensor
   std::optional<DisplayRecord> at_display{};      ///< thresholds at the operator's display; at_display()
   RunFigures figures;                             ///< of `curve`
-  double twin_s = 0;                              ///< of the simulation of `twin`
+  double twin_s = 0;                              ///< duration of the simulation of `twin`
   std::optional<TimeForecast> forecast{};         ///< made before the first presentation; as Provenance::forecast
-  std::optional<Error> ended_by;                  ///< of an early stop; the folder is valid and marked interrupted
+  std::optional<Error> ended_by;                  ///< reason of an early stop; the folder is valid, marked interrupted
   std::vector<Presentation> presentations{};      ///< of `curve`
   std::optional<CurveUncertainty> uncertainty{};  ///< of `curve`; empty if the plan has no budget
 };

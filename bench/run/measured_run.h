@@ -26,9 +26,9 @@ namespace todbench {
 struct MeasuredRun {
   MeasurementResult result;
   MeasurementOptions options;
-  std::map<double, ProportionTable> functions{};  ///< of an adaptive schedule's stopping rule
-  std::vector<ChangedSetting> changed{};          ///< of the camera, from its opening to the last frame
-  double measures_s = 0;                          ///< of the physical measures; 0: none were taken
+  std::map<double, ProportionTable> functions{};  ///< for the stopping rule of an adaptive schedule
+  std::vector<ChangedSetting> changed{};          ///< settings that changed between opening and last frame
+  double measures_s = 0;                          ///< duration of the physical measures; 0: none were taken
 };
 
 /// Returns the response of the contrast estimator for each plate, computed with the twin of the plan.

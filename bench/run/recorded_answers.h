@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recorded answers of a measurement, other than its frames: each is stored with its question.
+// Recorded inputs of a measurement other than its frames. Each answer is stored with its question.
 #pragma once
 
 #include <cstddef>
@@ -55,7 +55,7 @@ class RecordedAnswers {
 
   /// Returns whether every recorded answer was given.
   [[nodiscard]] bool at_end() const { return next_ == readings_.size(); }
-  /// Succeeds if all questions so far were the recorded ones.
+  /// Succeeds if all questions so far agree with the recording.
   [[nodiscard]] Result<void> agreed() const;
 
  private:

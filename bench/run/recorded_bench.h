@@ -28,7 +28,7 @@ struct StreamHeader;
 /// A bench that replays a recording.
 struct RecordedBench {
   OpenedBench bench;
-  std::shared_ptr<const RecordedAnswers> answers;  ///< reports afterwards whether the questions were the recorded ones
+  std::shared_ptr<const RecordedAnswers> answers;  ///< reports afterwards whether the questions match the recording
 };
 
 /// Opens the bench of a session's recording. A measurement with the same questions in the same order receives the same

@@ -31,7 +31,7 @@ struct RampOutcome {
   std::vector<AdequacyFinding> findings{};  ///< `ramp_direction`, `contrast_lag`
 };
 
-/// Sets threshold and interval of the points of a curve to those of the fit over all contrasts of a ramp, and adds the
+/// Takes threshold and interval of the points of a curve from the fit over all contrasts of a ramp, and adds the
 /// continuous curve. `run`: with the observed contrasts. `curve`: from the answers of at_set_contrasts(). Errors: those
 /// of RampFit::of().
 [[nodiscard]] Result<RampOutcome> take_ramp(TodCurve& curve, const MeasurementResult& run,

@@ -43,7 +43,7 @@ struct PairedOutcome {
   std::optional<Error> ended_by;   ///< `interrupted`
 };
 
-/// Returns the options with which the twin is shown the presentations of a camera.
+/// Returns the options for showing the camera's presentations to the twin.
 [[nodiscard]] PairedTwinOptions paired_options(const ExperimentInputs& inputs, std::span<const SetUpRecord> set_ups,
                                                std::uint64_t seed, std::stop_token stop);
 

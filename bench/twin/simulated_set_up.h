@@ -22,9 +22,9 @@ struct SimulatedSetUp {
   std::map<double, ProportionTable> functions{};  ///< for the stopping rule of an adaptive schedule (stopping_tables())
 };
 
-/// Creates the set-up. `shown_delta_t_k` and `source`: as for simulated_bench(). `responses`: those of
-/// simulated_responses() for the same sensor in kelvin; if empty, they are computed, which takes half a second per
-/// plate. Errors: those of contrast_response().
+/// Creates the set-up. `shown_delta_t_k` and `source`: as for simulated_bench(). `responses`: result of
+/// simulated_responses() for the same sensor in kelvin. If empty, the responses are computed, which takes half a second
+/// per plate. Errors: those of contrast_response().
 [[nodiscard]] Result<SimulatedSetUp> simulated_set_up(const Plan& plan, const ExperimentInputs& inputs,
                                                       std::map<double, double> shown_delta_t_k, std::stop_token stop,
                                                       const SimulatedSourceOptions& source = {},

@@ -21,8 +21,8 @@ struct SpectralBand {
 [[nodiscard]] double band_radiance(const SpectralBand& band, double temperature_k);
 /// Returns the derivative of band_radiance() by temperature, in W/(m2 sr K).
 [[nodiscard]] double band_radiance_derivative(const SpectralBand& band, double temperature_k);
-/// Returns the temperature of the black body with this radiance; empty for a radiance of 0 or less, or above that of
-/// 1e6 K.
+/// Returns the temperature of the black body with this radiance; empty for a radiance of 0 or less, or above the
+/// radiance at 1e6 K.
 [[nodiscard]] std::optional<double> radiation_temperature_k(const SpectralBand& band, double radiance_w_m2_sr);
 /// Returns the weight dL/dT of a wavelength (power), up to a constant factor.
 [[nodiscard]] double thermal_weight(double wavelength_um, double temperature_k);

@@ -33,7 +33,7 @@ struct LaboratoryOptions {
   double distance_m = 2;
   cv::Point2d centre_px{0.3, -0.2};  ///< middle of the plate in the picture, from the middle of the picture
   double rotation_deg = 0.4;         ///< rotation of the plate about the line of sight
-  /// Connects a camera other than the GigE Vision camera. It must send the counts of `sensor`.
+  /// Connects a camera other than the GigE Vision camera. This camera must send the counts of `sensor`.
   ConnectCamera connect;
   EmulatedGigeCameraConfig camera;  ///< the sensor sets geometry, rate and scale
   /// Error of the stated scale: the ratio of stated to true kelvin, both measured from `scene_temperature_k` of the

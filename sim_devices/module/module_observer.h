@@ -12,11 +12,11 @@
 namespace todbench {
 
 /// Returns the observer `spec` with its window, search range and internal noise, and with a module in place of its
-/// templates. For every patch the module receives two arrays: one <f8 of six numbers (size in displayed samples,
-/// displayed samples per pitch, contrast in kelvin, phase in x and y in samples, noise of the sensor in kelvin), and
-/// one <f4 with the patch as the templates would receive it (seen_patch()). The module returns one score for each
-/// alternative, and the highest score determines the answer. There is no judge(): graded answers are those of choose(),
-/// 1 or 0. After a failure() every choice is made without scores. One thread at a time.
+/// templates. For every patch the module receives two arrays. The first is <f8 with six numbers: size in displayed
+/// samples, displayed samples per pitch, contrast in kelvin, phase in x and y in samples, noise of the sensor in
+/// kelvin. The second is <f4 with the patch as the templates would receive it (seen_patch()). The module returns one
+/// score for each alternative, and the highest score determines the answer. There is no judge(): graded answers come
+/// from choose() and are 1 or 0. After a failure() every choice is made without scores. One thread at a time.
 [[nodiscard]] std::unique_ptr<Observer> module_observer(const TemplateObserverSpec& spec, Alternatives alternatives,
                                                         const ModulePlan& module,
                                                         std::function<void(std::string_view line)> on_error_line);

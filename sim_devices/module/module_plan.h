@@ -27,7 +27,7 @@ inline constexpr std::array all_module_places{ModulePlace::picture, ModulePlace:
 /// Returns the name of the place.
 [[nodiscard]] std::string_view to_string(ModulePlace place);
 
-/// [[module]] of plans and sensor files. Ranges are those of `module_ranges`.
+/// [[module]] of plans and sensor files. `module_ranges` states the ranges.
 struct ModulePlan {
   ModulePlace place = ModulePlace::picture;
   std::string command;                            ///< for a shell, run in the folder of the caller
@@ -54,8 +54,8 @@ struct SensorFact {
 /// Returns the options of the process. The header states place, parameters and, if given, facts of the sensor.
 [[nodiscard]] ModuleStageOptions stage_options(const ModulePlan& plan, std::span<const SensorFact> sensor = {});
 
-/// Returns the error of a module as an error of the run: `internal` if it was, otherwise `integrity`, so that it is not
-/// mistaken for the loss of the camera.
+/// Returns the error of a module as an error of the run. `internal` stays `internal`. Any other error becomes
+/// `integrity`, so that it is not mistaken for the loss of the camera.
 [[nodiscard]] Error module_error(const ModulePlan& plan, const Error& error);
 
 /// Facts about a module at the start of a run, for the record.

@@ -28,15 +28,15 @@ struct CameraHalo {
 /// the largest of three estimates, clustered by blocks of 16 x 16 pixels, by rows and by columns of these blocks.
 class CameraHaloFit {
  public:
-  /// `samples_per_pitch` belongs to the camera.
+  /// `samples_per_pitch`: value of the camera.
   CameraHaloFit(const SensorSpec& twin, int samples_per_pitch);
 
   /// Adds a picture of this contrast. Pictures of another size are ignored.
   void add(const OpticsPicture& picture, double delta_t_k);
 
-  /// Returns the halo. `f_number_ratio`: f-number of the camera over that of the twin (CameraOptics), for the tail of
-  /// diffraction. Empty if the halo is below half a per cent or below five standard errors (white noise exceeds these
-  /// limits by chance in one of a million sessions), or with fewer than two different set-ups.
+  /// Returns the halo. `f_number_ratio`: f-number of the camera divided by the twin's f-number (CameraOptics), for the
+  /// tail of diffraction. Empty if the halo is below half a per cent or below five standard errors (white noise exceeds
+  /// these limits by chance in one of a million sessions), or with fewer than two different set-ups.
   [[nodiscard]] std::optional<CameraHalo> result(double f_number_ratio) const;
 
  private:

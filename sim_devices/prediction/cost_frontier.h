@@ -25,7 +25,7 @@ struct ThresholdEstimate {
   std::optional<double> standard_error_pitch{};  ///< as the estimate states it
 };
 
-/// One way of computing the thresholds, with its time and its error. The computing time is that of one thread on an
+/// One way of computing the thresholds, with its time and its error. The computing time is the time of one thread on an
 /// idle machine: the smaller of wall time and processor time.
 struct CostPoint {
   std::string knob;     ///< "wavelengths", "phases", "wrap", "band", "draws", "trials", "tolerance", "planner"
@@ -83,7 +83,7 @@ struct CostTask {
   SceneMotion motion{};
   std::vector<double> delta_t_k;    ///< contrasts whose thresholds are estimated
   std::vector<CostChoice> choices;  ///< knob "planner"
-  std::vector<CostTrials> trials;   ///< knob "trials"; cheap ones first
+  std::vector<CostTrials> trials;   ///< knob "trials"; cheap settings first
   std::uint64_t seed = 1;
   double budget_s = 60;  ///< wall time for the whole task
   /// Time base of costs and budget. The host's clock stops work that still runs at the end of the budget.

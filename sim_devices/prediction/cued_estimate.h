@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // 75 % size for an observer that knows the position of the target: analytic, without noise draws. It brackets sizes and
-// feeds the planner of effects. Reported numbers are those of the searching observer.
+// feeds the planner of effects. Reported numbers come from the searching observer.
 #pragma once
 
 #include <map>
@@ -23,8 +23,8 @@ class CuedEstimate {
   /// `observer` must outlive it.
   CuedEstimate(const SensorSpec& sensor, const SensorPlan& plan, TemplateObserver& observer, SceneMotion motion = {});
 
-  /// Sets the contrast at which an observer with an eye sees the target: its noise, which depends on the size, is added
-  /// to that of `q` in all later results. No effect for observers without an eye.
+  /// Sets the contrast at which an observer with an eye sees the target: the noise of the eye, which depends on the
+  /// size, is added to the noise `q` in all later results. Has no effect for observers without an eye.
   void show(double contrast_k) { contrast_k_ = contrast_k; }
   /// Returns the 75 % size in pitches. `q` is the noise per sample over the contrast, internal noise included. Errors:
   /// `invalid_input` if no size from 0.2 to 40 pitches reaches 75 % correct, or if even the smallest exceeds it.
@@ -40,8 +40,8 @@ class CuedEstimate {
  private:
   [[nodiscard]] Result<const SizeTrial*> trial_at(int index);
   [[nodiscard]] double proportion(const SizeTrial& trial, double q) const;
-  /// Returns whether no size of the ladder can reach 75 % correct at `q`, judged by the sizes at `index` and `index` -
-  /// 4.
+  /// Returns whether no size of the ladder can reach 75 % correct at `q`, judged by the sizes at `index` and `index -
+  /// 4`.
   [[nodiscard]] bool hopeless(double q, int index);
 
   TemplateObserver& observer_;

@@ -50,8 +50,8 @@ struct DirectEstimateOptions {
 /// every pixel are simulated with one projection for each draw and phase, which takes up to sixteen times as long. If
 /// the accuracy requires a standard error, draws are added until it is met. Errors: `invalid_input` (the camera's
 /// reading of a contrast is 0; no size between 0.2 and 40 pitches brackets 75 %, so the contrast has no threshold; the
-/// required standard error needs more draws than Accuracy::max_noise_draws, in which case the message states the
-/// reachable one).
+/// required standard error needs more draws than Accuracy::max_noise_draws; the message states the reachable standard
+/// error).
 [[nodiscard]] Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const SensorPlan& plan,
                                                                TemplateObserver& observer,
                                                                const std::vector<double>& delta_t_k,

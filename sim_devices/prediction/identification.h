@@ -67,7 +67,7 @@ struct IdentificationTask {
   /// Largest distance, in samples, over which a picture influences a sample behind the stages; empty: the whole picture
   /// does.
   std::optional<int> stage_reach_px{};
-  /// Cn2 of the turbulence along the path of each range, instead of that of the sensor; 0: as in the sensor. The plan
+  /// Cn2 of the turbulence along the path of each range, instead of the sensor's Cn2; 0: as in the sensor. The plan
   /// must simulate turbulence. The templates of an observer with knowledge behind the camera include this air.
   double cn2_m_minus_2_3 = 0;
   std::uint64_t seed = 1;

@@ -17,8 +17,8 @@ inline constexpr double viewing_cost_percent = 1;
 /// Proposed zoom and distance.
 struct ViewingProposal {
   double stated_arcmin = 0;        ///< per displayed sample, of the stated display
-  double stated_cost_percent = 0;  ///< S75 of the stated display over that of a large picture
-  double least_arcmin = 0;         ///< from this angle on the cost is below viewing_cost_percent
+  double stated_cost_percent = 0;  ///< increase of S75 at the stated display over a large picture
+  double least_arcmin = 0;         ///< smallest angle at which the cost is below viewing_cost_percent
   double zoom = 1;                 ///< smallest whole zoom at the stated distance
   double viewing_distance_m = 0;   ///< largest at the stated zoom
 };

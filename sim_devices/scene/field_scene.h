@@ -31,7 +31,7 @@ struct ScenePicture {
   double element_m = 0;  ///< side of a picture element at the scene
 };
 
-/// Scene of regions in the order of painting (later ones cover earlier ones), or of a picture. Copyable.
+/// Scene of regions in the order of painting (later regions cover earlier regions), or of a picture. Copyable.
 struct FieldScene {
   std::string name, description;
   double background_k = 300;  ///< temperature of places without a region, or beyond the edges of the picture

@@ -12,7 +12,7 @@ namespace todbench {
 /// Mounted plate at a distance, with its middle near the middle of the picture. Copyable.
 struct PlateScene {
   TargetPlate plate;          ///< as mounted
-  double delta_t_k = 0;       ///< temperature of the triangles minus that of the surround
+  double delta_t_k = 0;       ///< temperature of the triangles minus temperature of the surround
   double background_k = 300;  ///< temperature of the surround
   double distance_m = 2;
   cv::Point2d shift_mm{0, 0};        ///< shift of the plate in its own plane

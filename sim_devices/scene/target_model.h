@@ -29,7 +29,7 @@ struct TargetModel {
 
 /// Returns the view from far away at the height of the target. Azimuth 0 degrees is from ahead, 90 from its right side
 /// (its front is at the right of the picture), 180 from behind. The view consists of the faces turned to the viewer,
-/// far ones first; x right, y down, with the origin of the model. All faces are marked as target.
+/// far faces first; x right, y down, with the origin of the model. All faces are marked as target.
 [[nodiscard]] std::vector<SceneRegion> view_of(const TargetModel& model, double azimuth_deg);
 
 }  // namespace todbench

@@ -28,7 +28,7 @@ struct SensorKey {
 
 /// Returns the keys of geometry and output of a camera, which belong to no effect.
 [[nodiscard]] const std::vector<SensorKey>& camera_keys();
-/// Returns all keys. Those of effects follow the order of the chain.
+/// Returns all keys. The keys of effects follow the order of the chain.
 [[nodiscard]] std::vector<SensorKey> sensor_keys();
 
 }  // namespace todbench

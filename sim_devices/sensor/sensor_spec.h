@@ -108,8 +108,8 @@ struct SensorSpec {
 /// not support.
 [[nodiscard]] Result<void> require_square_pixels(const SensorSpec& spec, std::string_view task);
 
-/// Fails with `invalid_input` if the pictures of a simulated camera, with one copy in kelvin, one in counts and the
-/// intermediate ones, need more than `memory_bytes`.
+/// Fails with `invalid_input` if the pictures of a simulated camera need more than `memory_bytes`: one copy in kelvin,
+/// one in counts, and the intermediate pictures.
 [[nodiscard]] Result<void> check_picture_memory(const SensorSpec& spec, double memory_bytes);
 
 }  // namespace todbench

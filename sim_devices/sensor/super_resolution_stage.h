@@ -17,7 +17,7 @@ enum class FrameShifts {
 
 /// Options of super_resolution_stage().
 struct SuperResolutionStageOptions {
-  int frames = 4;  ///< number of frames combined, the most recent ones; at least factor^2
+  int frames = 4;  ///< number of the most recent frames that are combined; at least factor^2
   int factor = 2;  ///< samples per pixel and axis
   FrameShifts shifts = FrameShifts::measured;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Separate /dev, /sys and udev for programs under the preload library of umockdev. For these programs, emulated devices
-// behave like real ones in open, ioctl, mmap and udev.
+// behave like real devices in open, ioctl, mmap and udev.
 #pragma once
 
 #include <memory>

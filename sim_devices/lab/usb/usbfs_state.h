@@ -28,9 +28,9 @@ namespace todbench {
 /// submissions from its other threads wait, too.
 inline constexpr std::chrono::microseconds usbfs_reap_patience{300};
 
-/// One thread per endpoint performs its transfers, one more answers the calls that reap. The calls themselves arrive on
-/// the thread of the emulated system. All methods are called with the mutex held, except the destructor, end_workers()
-/// and the bodies of the threads.
+/// State and threads of a plugged device. One thread per endpoint performs its transfers, and one thread answers the
+/// calls that reap. The calls themselves arrive on the thread of the emulated system. All methods are called with the
+/// mutex held, except the destructor, end_workers() and the bodies of the threads.
 struct PluggedUsbDevice::State {
   std::shared_ptr<UsbDevice> device;  ///< null after unplugging, when the port is gone
   int number = 0;
