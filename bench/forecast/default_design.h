@@ -8,12 +8,14 @@
 
 namespace todbench {
 
-/// Returns the plan without unit under test, limits, camera and instruments: a pure simulation.
+/// Returns the plan as a pure simulation: without operator, place, unit under test, limits, camera and addresses of
+/// instruments.
 [[nodiscard]] Plan plan_of_nobody(Plan plan);
 
-/// Returns the plan with a suitable distance: the sizes of its plates bracket the 75 % sizes that a draft estimate
-/// predicts for its contrasts, as far as the plates fit into the picture and the windows of the observer keep clear of
-/// neighbouring triangles. The distance is unchanged if there is no estimate. Errors: `interrupted`.
+/// Returns the plan with a suitable distance: the middle of the sizes of its plates is at the mean 75 % size that a
+/// draft estimate predicts for its contrasts. The distance is limited so that the plates fit into the picture, the
+/// largest triangle covers at least five displayed samples, and the windows of the observer keep clear of neighbouring
+/// triangles. The distance is unchanged if there is no estimate. Errors: `interrupted`.
 [[nodiscard]] Result<LoadedPlan> with_suitable_distance(const LoadedPlan& loaded, std::stop_token stop);
 
 }  // namespace todbench

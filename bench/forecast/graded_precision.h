@@ -37,9 +37,10 @@ struct GradedDesignFigures {
 /// of size S average the pattern only if they move the triangle across its detectors: s = 1.5 exp(-(1.9 / S)^2), S in
 /// pitches. 1.5 applies to set-ups that place triangles on the same detectors (both numbers from 78 runs of
 /// `graded_coverage_study` with a pattern of 0.1 K). r is 0.048 over the number of phases, at most 0.15, if the
-/// mountings cancel the phases (five set-ups or more; 138 runs of 12 phases and 11 of 3 of `graded_coverage_study`).
-/// With fewer set-ups the phases do not cancel: 0.28 / (1 + (noise / 0.13)^2), because noise hides the place of a
-/// triangle between the detectors (48 runs of adaptive plans at 8 contrasts with the SC2000, 2 to 5 set-ups).
+/// mountings cancel the phases (five set-ups or more; 138 runs with 12 phases and 11 runs with 3 phases of
+/// `graded_coverage_study`). With fewer set-ups the phases do not cancel: 0.28 / (1 + (noise / 0.13)^2), because noise
+/// hides the place of a triangle between the detectors (48 runs of adaptive plans at 8 contrasts with the SC2000, 2 to
+/// 5 set-ups).
 ///
 /// For first-order noise of lag-1 correlation rho, the answers to frames k apart share
 ///   c(k) = (3/4)^2 (Phi2(z, z; pattern share + (sensor share - pattern share) rho^k) - (2/3)^2) / (p (1 - p)) - g.

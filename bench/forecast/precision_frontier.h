@@ -19,10 +19,10 @@ struct PrecisionChoice {
   double bench_s = 0;                          ///< time on the bench alone; 0 without a camera
   double seconds = 0;    ///< time of the measurement with the camera, or of the simulation if the plan has no camera
   bool planned = false;  ///< true for the plan itself
-  /// The graded choice with the smallest squared half-width times the seconds of the bench (without a camera, of the
-  /// simulation), so that the load of the computer changes no recommendation. The half-width contains the rows of the
-  /// budget, which frames do not reduce; with these rows, the recommended choice is the fastest within 5 % of the
-  /// smallest product.
+  /// True for the graded choice with the smallest squared half-width times bench time (without a camera, simulation
+  /// time). Bench time does not depend on the load of the computer, which therefore changes no recommendation. The
+  /// half-width contains the rows of the budget, which frames do not reduce; with these rows, the recommended choice is
+  /// the fastest within 5 % of the smallest product.
   bool recommended = false;
 };
 

@@ -15,7 +15,7 @@ namespace todbench {
 inline constexpr double studied_band_percent = 10;
 
 /// Returns the largest rate of a ramp at `from_k`, in K/s, at which a lag of the plate changes the contrast between
-/// large and small triangles by at most 0.6 %: S75 then moves by 0.3 % (a ramp at 0.23 K). Infinite without a lag.
+/// large and small triangles by at most 0.6 %: S75 then changes by 0.3 % (a ramp at 0.23 K). Infinite without a lag.
 [[nodiscard]] double largest_ramp_rate(double from_k, double lag_s);
 
 /// Time and precision of one way to measure the contrasts of a plan.

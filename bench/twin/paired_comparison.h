@@ -48,9 +48,9 @@ struct PairedOutcome {
                                                std::uint64_t seed, std::stop_token stop);
 
 /// Shows the twin every presentation of the camera (twin_answers()) and adds the paired ratios (paired_ratio()) to the
-/// points of a comparison whose A is the camera's curve. A point keeps the unpaired ratio if it has no function of the
-/// twin, no graded answers, or no point in the camera's curve. If a threshold is not fit for a decision, the paired
-/// verdict is inconclusive too.
+/// points of a comparison in which curve A is the camera's curve. A point keeps the unpaired ratio if it has no
+/// function of the twin, no graded answers, or no point in the camera's curve. If a threshold is not fit for a
+/// decision, the paired verdict is inconclusive too.
 [[nodiscard]] PairedOutcome add_paired_ratios(Comparison& comparison, const PairedCamera& camera,
                                               const ExperimentInputs& inputs, const PairedTwinOptions& options);
 

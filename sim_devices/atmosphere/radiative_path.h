@@ -23,8 +23,8 @@ struct RadiativeScene {
 /// Returns the radiance difference in front of the air, e [B(target) - B(background)], in W/(m2 sr). Behind the air
 /// this difference is multiplied by tau. Path radiance and equal reflections cancel.
 [[nodiscard]] double radiance_contrast(const SpectralBand& band, const RadiativeScene& scene);
-/// Converts a radiance contrast to kelvin by division by dB/dT at `calibration_k`, the temperature at which the NETD of
-/// the camera is stated. The conversion is linear, so air also reduces the result by the factor tau.
+/// Converts a radiance contrast to kelvin: divides it by dB/dT at `calibration_k`, the temperature for which the NETD
+/// of the camera is stated. The conversion is linear, so air also reduces the result by the factor tau.
 [[nodiscard]] double equivalent_contrast_k(const SpectralBand& band, double radiance_contrast_w_m2_sr,
                                            double calibration_k);
 

@@ -27,9 +27,9 @@ enum class BarPattern {
 [[nodiscard]] std::vector<double> bar_energies(double frequency_per_pitch, BarPattern alternative,
                                                const TransferFunction& transfer, double band_per_pitch, int phases);
 
-/// Returns the contrast over noise (sd 1 per sample) at which an ideal observer that knows the phase is correct in
-/// `proportion` of two-interval decisions, Phi(c sqrt(E / 2)) averaged over the phases. Precondition: energies > 0,
-/// proportion between 0.5 and 1.
+/// Returns the contrast c over noise (sd 1 per sample) at which an ideal observer that knows the phase is correct in
+/// `proportion` of two-interval decisions. The proportion is Phi(c sqrt(E / 2)), averaged over the phases.
+/// Precondition: energies > 0, proportion between 0.5 and 1.
 [[nodiscard]] double ideal_two_interval_contrast(const std::vector<double>& energies, double proportion);
 /// Returns the proportion correct of the same observer at a contrast over noise.
 [[nodiscard]] double ideal_two_interval_proportion(const std::vector<double>& energies, double contrast);

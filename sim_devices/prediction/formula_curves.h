@@ -28,10 +28,10 @@ struct FormulaConditions {
 struct AxisCurves {
   LogLinearCurve horizontal, vertical;
 };
-/// Returns the MRTD in kelvin over cycles/mrad, from 1 % of the Nyquist frequency of the sampling to the Nyquist
-/// frequency, at which it is cut by definition. Contains the MTF of optics and detector, but not display and eye.
+/// Returns the MRTD in kelvin over cycles/mrad, from 1 % to 100 % of the Nyquist frequency of the sampling. By
+/// definition the curve ends there. Contains the MTF of optics and detector, but not display and eye.
 [[nodiscard]] Result<AxisCurves> mrtd_curves(const SensorSpec& spec, const FormulaConditions& conditions);
-/// Returns the MTDP-like curve: continues beyond Nyquist as long as at least two bars are resolved at the best phase
+/// Returns the MTDP-like curve. It continues beyond Nyquist as long as at least two bars are resolved at the best phase
 /// and the modulation is above 1 %.
 [[nodiscard]] Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditions& conditions);
 /// Returns the contrast threshold of the system over cycles/mrad, up to Nyquist: eye / (display x sensor MTF) x sqrt(1

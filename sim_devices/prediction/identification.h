@@ -129,7 +129,7 @@ class IdentificationFrames {
   /// Prepares the pictures of a task. Errors: those of identify() about the targets.
   [[nodiscard]] static Result<IdentificationFrames> of(const IdentificationTask& task);
   /// Returns displayed kelvin above the background, with the noise of this draw and its sampling phase for this view,
-  /// as in identify() of the same task. All frames of a range have one size. Errors: those of the stages.
+  /// as in identify() of the same task. All frames of a range have the same size. Errors: those of the stages.
   [[nodiscard]] Result<cv::Mat1f> frame_k(std::size_t range, std::size_t target, std::size_t aspect,
                                           std::uint64_t draw) const;
   /// Returns the contrast dT_RSS behind the air.

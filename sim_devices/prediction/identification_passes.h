@@ -71,8 +71,8 @@ class IdentificationPasses {
                        double transmittance, std::vector<AlternativeAspects> shown, int side);
   [[nodiscard]] Result<void> prepare_stages();
   [[nodiscard]] Result<void> measure_scales();
-  /// Gain of the stages for a view: least-squares fit of its picture behind the stages to its picture in front of them,
-  /// over the window.
+  /// Gain of the stages for a view, from a least-squares fit over the window: picture behind the stages over picture in
+  /// front of them.
   struct ViewGain {
     double product = 0, energy = 0;  ///< the gain is their ratio
     double variance = 0;             ///< variance of the product

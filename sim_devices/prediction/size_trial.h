@@ -87,9 +87,9 @@ class SizeTrial {
   [[nodiscard]] double variance_ratio(SharedBy shared) const;
   /// Returns the standard deviation of the noise of the eye in a score, in units of the contrast. 0 without an eye.
   [[nodiscard]] double eye_sd(double contrast_k) const;
-  /// Returns the variance per sample of the white noise that moves a score difference as much as the noise of the
-  /// observer's eye, in units of the contrast squared; the smallest over the pairs of alternatives, at the middle of
-  /// the search. 0 without an eye.
+  /// Returns the variance per sample, in units of the contrast squared, of white noise that changes a score difference
+  /// as much as the noise of the observer's eye. The result is the smallest variance over the pairs of alternatives, at
+  /// the middle of the search. 0 without an eye.
   [[nodiscard]] double eye_variance(double contrast_k) const;
 
  private:

@@ -78,7 +78,7 @@ class BarFrames {
   /// Prepares the pictures of a task. Errors: those of virtual_mrtd() about the task.
   [[nodiscard]] static Result<BarFrames> of(const VirtualMrtdTask& task);
   /// Returns displayed kelvin above the surround, with the noise of this draw, in one of 8 x 2 phases. All frames of a
-  /// frequency have one size.
+  /// frequency have the same size.
   [[nodiscard]] cv::Mat1f frame_k(std::size_t frequency, BarPattern pattern, double contrast_k, std::size_t phase,
                                   std::uint64_t draw) const;
   /// Returns VirtualMrtdPoint::ideal_k of this frequency.
