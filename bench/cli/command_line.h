@@ -13,10 +13,11 @@
 
 namespace todbench {
 
-/// Returns the commands that help lists, in the order they were added; commands for builds and shells have no group.
+/// Returns the commands that the help lists, in the order in which they were added. The help does not list commands for
+/// builds and shells, which have no group.
 [[nodiscard]] std::vector<const CLI::App*> visible_commands(const CLI::App& app);
 
-/// A command line that works, and its effect.
+/// A valid command line with its effect.
 struct CommandExample {
   std::string line, effect;
 };
@@ -31,7 +32,7 @@ void add_examples(CLI::App& app);
 
 /// Candidates for the completion of a word.
 struct Completion {
-  std::vector<std::string> words;  ///< in the order of display; not narrowed to the typed letters
+  std::vector<std::string> words;  ///< in the order of display; also words that do not begin with the typed letters
   bool files = false;              ///< also any file or folder
 };
 
@@ -44,7 +45,7 @@ struct Completion {
 /// then ":files" if any file may follow. Not a command of the parser, because it takes arbitrary words.
 void print_completions(const CLI::App& app, const std::vector<std::string>& words);
 
-/// Adds `todbench manual`, which help does not list; `app` outlives the run.
+/// Adds `todbench manual`, which the help does not list. `app` must outlive the run.
 void add_manual_command(CLI::App& app, Program& program);
 
 }  // namespace todbench

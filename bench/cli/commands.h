@@ -23,22 +23,22 @@ struct CommonOptions {
 /// State shared by the parser and the commands.
 struct Program {
   CommonOptions common;
-  StopSignals* stop = nullptr;  ///< outlives the run
+  StopSignals* stop = nullptr;  ///< must outlive the run
   std::function<int()> chosen;  ///< set by the chosen subcommand
 };
 
 /// Adds --json, --quiet and --seed, and sets `action` to run when the subcommand is chosen.
 void finish_command(CLI::App& command, Program& program, std::function<int(Console&)> action);
 
-/// Validators of option values. Unlike those of the parser they reject NaN and quote the value. The message names
-/// another unit if that explains the value; `unit`: as at the end of the option's name.
+/// Validators of option values. Unlike the validators of the parser, they reject NaN and quote the value. If the value
+/// would be valid in another unit, the message names that unit. `unit`: unit of the option as at the end of its name.
 [[nodiscard]] CLI::Validator number_in(double low, double high, std::string_view unit = {});
 [[nodiscard]] CLI::Validator whole_number(std::int64_t low, std::int64_t high);
 
 /// Prints the error and returns its exit code.
 [[nodiscard]] int report_error(Console& console, const Error& error);
 
-/// Add the subcommand of this name to `app`.
+/// Add the subcommand that the function names to `app`.
 void add_fit_command(CLI::App& app, Program& program);
 void add_render_command(CLI::App& app, Program& program);
 void add_mtf_command(CLI::App& app, Program& program);

@@ -11,13 +11,13 @@
 
 namespace todbench {
 
-/// Session with its folder as stated on the command line. Borrowed for the call.
+/// Session and its folder as stated on the command line. References that are valid for the duration of the call.
 struct NamedSession {
   const std::string& folder;
   const Session& session;
 };
 
-/// Prints boresight() of both sessions with its assumptions. Returns the exit code.
+/// Prints the result of boresight() for both sessions, and its assumptions. Returns the exit code.
 [[nodiscard]] int show_boresight(Console& console, const std::array<NamedSession, 2>& sessions, const Opening& opening,
                                  const std::vector<std::string>& accepted_files);
 

@@ -45,17 +45,17 @@ class Console {
   void warning(std::string_view sentence);
   /// Writes an error to standard error on one line, also with --quiet.
   void error(std::string_view sentence);
-  /// Starts a phase of work; progress() then shows the remaining time: in a bar if standard error is a terminal,
-  /// otherwise as a line a minute.
+  /// Starts a phase of work. progress() then shows the remaining time: in a bar if standard error is a terminal,
+  /// otherwise in one line per minute.
   void phase(std::string_view name);
   /// Shows the progress of the phase.
   void progress(std::size_t done, std::size_t planned);
-  /// Excludes the time until the next progress() from the estimate of the remaining time, because the work does not
-  /// advance.
+  /// Call it when the work stops advancing. Excludes the time until the next progress() from the estimate of the
+  /// remaining time.
   void stands_still();
-  /// Shows the reason of a wait: in place of the bar on a terminal, otherwise as an occasional line.
+  /// Shows why the run waits: in place of the bar on a terminal, otherwise as an occasional line.
   void waiting(std::string_view sentence);
-  /// Draws lines, over the previous ones if no other output came in between; terminals only.
+  /// Draws lines on a terminal; no output elsewhere. Overwrites the previous picture if no other output followed it.
   void picture(const std::vector<std::string>& lines);
   /// Receiver of notes and progress: none, a terminal, or a file or pipe.
   enum class Audience { nobody, terminal, lines };
@@ -78,8 +78,8 @@ class Console {
   std::chrono::steady_clock::time_point last_draw_;
 };
 
-/// Returns the lines of a text with line ends, for standard output or standard error; wrapped at words if that is a
-/// terminal.
+/// Returns a text with line ends for output to `descriptor` (standard output or standard error). Wraps it at words if
+/// the descriptor is a terminal.
 [[nodiscard]] std::string broken_for(int descriptor, std::string_view text);
 
 /// Flushes standard output. Errors: `io` if it is full or closed.
@@ -87,7 +87,7 @@ class Console {
 
 /// Returns "0.480"; "–" for a missing number; "1.2e-08" if all decimals would be zero.
 [[nodiscard]] std::string fixed(const std::optional<double>& value, int decimals);
-/// Returns "0.468 … 0.493"; an open side is –.
+/// Returns "0.468 … 0.493"; an open limit is shown as –.
 [[nodiscard]] std::string range(const Interval& interval, int decimals);
 
 }  // namespace todbench

@@ -17,7 +17,7 @@ namespace todbench {
 inline constexpr const char* why_text =
     "states why each neutral effect is neutral, instead of one line for all of them";
 
-/// Options of a command that simulates a sensor; they outlive the parser.
+/// Options of a command that simulates a sensor. They must outlive the parser.
 struct EffectDecisionOptions {
   /// Lists neutral effects with their reasons, instead of in one line.
   bool why = false;
@@ -26,7 +26,7 @@ struct EffectDecisionOptions {
   void add_to(CLI::App& command);
 };
 
-/// Effects of one simulated sensor, with the bound on the error by skipped effects.
+/// Effects of one simulated sensor, with an upper bound on the error that the skipped effects cause.
 struct DecidedEffects {
   std::string sensor;
   SensorPlan plan;
@@ -34,15 +34,15 @@ struct DecidedEffects {
   std::string promise;
 };
 
-/// Returns the reason why a scene without criterion simulates every effect that is not neutral. `scene`: "bars", "the
-/// identification of targets".
+/// Returns the sentence why every effect that is not neutral is simulated: the criteria of the planner hold for
+/// triangles, not for this scene. `scene`: "the threshold of bars", "the identification of targets".
 [[nodiscard]] std::string no_criterion_for(const std::string& scene);
 
 /// Prints the table of decisions: effects that are neutral in the sensor in one line, or with their reasons.
 void print_effect_table(const Console& console, const SensorPlan& plan, bool why);
-/// Prints the effects of a sensor with the promise.
+/// Prints the effects of a sensor and the sentence `promise`.
 void print_effects(const Console& console, const DecidedEffects& effects, const EffectDecisionOptions& options);
-/// Adds the keys "effects" (as in `plan`) and "promise".
+/// Adds the keys "effects" (as in the output of `todbench plan`) and "promise".
 void add_effects(Json& json, const DecidedEffects& effects);
 /// Prints the effects of each sensor of a dry run, or its JSON object: {"effects", "promise"}, or {"models":
 /// [{"sensor", "effects", "promise"}]} for several sensors. Returns the exit code.

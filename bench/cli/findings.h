@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Findings of adequacy, and other tables of results, as text for people.
+// Output of adequacy findings and of other results as text for people.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,15 @@
 
 namespace todbench {
 
-/// Prints one line for each finding, after `about`. If a finding makes a number unfit for a decision, the line states
-/// this.
+/// Prints one line for each finding: whether it makes the number unfit for a decision, then `about`, then the sentence
+/// of the finding.
 void print_findings(const Console& console, const std::optional<Adequacy>& adequacy, std::string_view about);
 
-/// Prints time against half-width as a table, with the recommended number of frames.
+/// Prints a table of measuring time and half-width of S75 for each number of frames, and marks the recommended number.
 void print_frontier(const Console& console, const std::vector<PrecisionChoice>& choices);
 
-/// Prints the ratios by common phases as a table, with the errors that these ratios do not cancel; no output without
-/// ratios. `measured_once`: has_contrast_measured_once() of a camera.
+/// Prints a table of the paired ratios (tod/comparison/paired_ratio.h), and a sentence about errors that do not cancel
+/// in them. No output without paired ratios. `measured_once`: has_contrast_measured_once() of a camera.
 void print_paired(const Console& console, const Comparison& comparison, bool measured_once);
 
 }  // namespace todbench

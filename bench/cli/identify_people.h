@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of `todbench identify` for people in place of the observer: pictures for people, and evaluation of their
-// answers.
+// Options of `todbench identify` with which people replace the observer: writing pictures for people, and evaluating
+// their answers.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -14,14 +14,14 @@
 
 namespace todbench {
 
-/// Options for people; they outlive the parser.
+/// Options for people. They must outlive the parser.
 struct PeopleOptions {
   /// `folder`: new folder for pictures in random order, with the truth in a separate folder; empty: no pictures are
   /// written. `m75_out`: file for the M75 of the people, as input of `todbench range --m75-of`; empty: none.
   std::string folder, m75_out;
-  /// Files answers.csv of one or several people, for the pictures that were written with the same options and seed.
+  /// Paths of answers.csv files, one per person. The pictures must have been written with the same options and seed.
   std::vector<std::string> answers;
-  /// Pictures of every target at every range for one person.
+  /// Number of pictures of each target at each range for one person.
   int per_target = 4;
   /// Adds the options to a command.
   void add_to(CLI::App& command);
@@ -29,7 +29,7 @@ struct PeopleOptions {
   [[nodiscard]] bool used() const { return !folder.empty() || !answers.empty(); }
 };
 
-/// Returns the range of 75 % correct in words, or the reason for its absence.
+/// Returns the range with 75 % correct answers in words; without a range, a phrase with the reason `none_because`.
 [[nodiscard]] std::string range_text(const SetCriterion& r75_m, std::string_view none_because);
 /// Returns M75 and V50 of a set in words, or the reason for their absence.
 [[nodiscard]] std::string criteria_text(const IdentificationStudy& study);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options --bars and --answers of `todbench judge`: a person judges the bars that a session kept.
+// Options --bars and --answers of `todbench judge`: a person judges the pictures of bars stored in a session.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -22,13 +22,13 @@ struct BarsArguments {
   BarsRequest request{};
   /// Facts of the person who answered.
   PersonFacts person{};
-  /// Accepted states of the session.
+  /// States of the session files that are accepted.
   Opening opening{};
 };
 
-/// Adds --bars, --answers and the options of both. `arguments` outlives the parser.
+/// Adds --bars, --answers and the options of both. `arguments` must outlive the parser.
 void add_bars_options(CLI::App& command, BarsArguments& arguments);
-/// Writes the pictures, or adds the answers to the session and writes its report again. Returns the exit code.
+/// Writes the pictures, or adds the answers to the session and rewrites its report. Returns the exit code.
 [[nodiscard]] int run_judge_bars(Console& console, const BarsArguments& arguments);
 
 }  // namespace todbench

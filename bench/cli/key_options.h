@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options that replace keys of the plan, from the table of keys.
+// Command-line options that replace values of the plan, generated from the table of plan keys.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -21,16 +21,16 @@ struct KeyOverrides {
   [[nodiscard]] bool has(std::string_view path) const;
 };
 
-/// Adds the options of the commands `of`, except that of the key `without` (a path; empty: all). `overrides` outlives
-/// the parser.
+/// Adds the options for the commands `of`, without the option of the key `without` (a path; empty: no exception).
+/// `overrides` must outlive the parser.
 void add_key_options(CLI::App& command, OptionOf of, KeyOverrides& overrides, std::string_view without = "");
 
 /// Returns the given value. Errors: `invalid_input` "--option: REASON". Precondition: has(path).
 [[nodiscard]] Result<KeyValue> given_value(const KeyOverrides& overrides, std::string_view path);
-/// Sets the given values in the plan, files as absolute paths. Errors: those of given_value().
+/// Sets the given values in the plan; file names become absolute paths. Errors: those of given_value().
 [[nodiscard]] Result<void> apply(const KeyOverrides& overrides, Plan& plan);
 
-/// Returns an error about a key of the plan in terms of the options, for a user who stated options and no plan.
+/// Replaces the key of the plan in an error by the option, for a user who stated options and no plan.
 [[nodiscard]] Error in_terms_of_options(const Error& error);
 
 }  // namespace todbench

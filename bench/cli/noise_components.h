@@ -8,7 +8,7 @@
 
 namespace todbench {
 
-/// Treatment of a recording with a correction of the camera or a moving scene.
+/// Treatment of a recording that contains a correction of the camera (NUC) or a moving scene.
 enum class AcrossCorrections { refuse, take };
 
 /// Runs `todbench noise RECORDING --components-only`: prints or writes the components. Returns the exit code.

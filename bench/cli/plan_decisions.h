@@ -16,20 +16,21 @@
 
 namespace todbench {
 
-/// Prints, for each limit, time against the probability of a decision, and the decisions of the planned design.
+/// Prints for each limit a table of measuring time against the probability of a decision, and the forecast for the
+/// planned design.
 void print_decisions(const Console& console, const std::vector<DecisionForecast>& forecasts, TargetKind target);
 
 /// Returns the value of the key "decide" of `plan --decide --json`.
 [[nodiscard]] Json decisions_json(const std::vector<DecisionForecast>& forecasts);
 
-/// Prints the design of least bench time, with the original plan for comparison.
+/// Prints the design with the least bench time, and the original plan for comparison.
 void print_design(const Console& console, const BestDesign& found);
 
 /// Returns the object of `plan --optimise --json`.
 [[nodiscard]] Json best_design_json(const BestDesign& found);
 
-/// Returns zoom and distance for an observer with an eye, at the largest contrast; empty for other observers, and if
-/// that contrast has no threshold. Errors: `interrupted`.
+/// Returns the proposed zoom and viewing distance for an observer with an eye, at the largest contrast. Empty for other
+/// observers, and if there is no threshold at that contrast. Errors: `interrupted`.
 [[nodiscard]] Result<std::optional<ViewingProposal>> viewing_of(const std::vector<double>& delta_t_k,
                                                                 const ExperimentInputs& inputs, std::stop_token stop);
 /// Returns the value of the key "viewing_proposal" of `plan --json` and `doctor --json`.

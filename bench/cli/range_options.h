@@ -17,17 +17,18 @@ namespace todbench {
 /// Options of `todbench range`.
 struct RangeOptions {
   /// Names and files. `atmosphere`: air path (load_atmosphere()). `haze`: aerosol of the built-in atmospheres. `band`:
-  /// spectral band LOW-HIGH in um; empty: that of the sensor. `sensor`: sensor of the formula models; empty: that of
+  /// spectral band LOW-HIGH in um; empty: band of the sensor. `sensor`: sensor of the formula models; empty: sensor of
   /// the session. `mrtd_file`, `mtdp_file`, `ctf_file`: CSV files that replace the formulas. `svg`, `page`: output
   /// files of the figure and of the page.
   std::string atmosphere, haze = "rural-23km", band, sensor, mrtd_file, mtdp_file, ctf_file, svg, page;
-  /// Computes the MTDP-like curve from the TOD thresholds, by this transfer; empty: by formula or file.
+  /// Transfer that converts the TOD thresholds to the MTDP-like curve; empty: the curve comes from the formula or a
+  /// file.
   std::optional<TodTransfer> transfer{};
   /// Models to evaluate.
   std::vector<RangeModel> models{RangeModel::tod};
-  /// Temperatures in K. `background_k`: background; if stated, the contrast is computed as radiance. `air_k`: air;
-  /// empty: that of the model atmosphere. `surround_k`: reflected surroundings; empty: that of the background.
-  /// `target_contrast`: luminance contrast of the target for TTP; empty: |dT| / (2 scene contrast).
+  /// Temperatures in K. `background_k`: background; if stated, the contrast is computed from radiances. `air_k`: air;
+  /// empty: temperature of the model atmosphere. `surround_k`: reflected surroundings; empty: temperature of the
+  /// background. `target_contrast`: luminance contrast of the target for TTP; empty: |dT| / (2 scene contrast).
   std::optional<double> background_k, air_k, surround_k, target_contrast;
   /// Emissivity of target and background.
   double emissivity = 1;
@@ -37,9 +38,9 @@ struct RangeOptions {
   CriterionSource criterion_source = CriterionSource::published;
   /// Observer of the TOD curve of the session; empty: no session.
   std::string curve_observer{};
-  /// Observers that the file of --m75-of states.
+  /// Phrase with the observers that the file of --m75-of states.
   std::string m75_observer{};
-  /// `n50`, `mtdp_n50`: cycles for 50 % by ACQUIRE and by the MTDP-like model. `extinction_u_percent`,
+  /// `n50`, `mtdp_n50`: cycles on the target for 50 % in ACQUIRE and in the MTDP-like model. `extinction_u_percent`,
   /// `curve_u_percent`: relative standard uncertainties of the extinction, and of the MRTD, MTDP-like and CTF
   /// thresholds; they widen the intervals.
   double n50 = 6, mtdp_n50 = 6, extinction_u_percent = 0, curve_u_percent = 0;
@@ -53,24 +54,24 @@ struct RangeOptions {
   /// Parameters of the formula models.
   FormulaConditions formula{};
 
-  /// Adds the options; `this` outlives the parser.
+  /// Adds the options. This object must outlive the parser.
   void add_to(CLI::App& command);
 
   /// Returns whether a model is requested.
   [[nodiscard]] bool asks(RangeModel model) const;
-  /// Returns whether the air is given by more than one extinction coefficient.
+  /// Returns whether the air path is a tabulated atmosphere and not a single extinction coefficient.
   [[nodiscard]] bool has_table() const;
-  /// Returns the sensor of --sensor, or that of the session with its microscan.
+  /// Returns the sensor of --sensor; if absent, the sensor of the session with its microscan.
   [[nodiscard]] Result<std::optional<SensorSpec>> sensor_of(const std::optional<Session>& session) const;
   /// Returns the air path of the options.
   [[nodiscard]] Result<Atmosphere> air(const std::optional<SensorSpec>& sensor, double extinction_per_km) const;
-  /// Returns the contrast of the target in kelvin on the scale of the NETD, converted from the radiances of target and
-  /// background; `delta_t_k` itself if no background is given.
+  /// Converts the radiances of target and background to a contrast in kelvin on the NETD scale. Returns `delta_t_k`
+  /// unchanged if no background is given.
   [[nodiscard]] Result<double> equivalent_contrast_k(double delta_t_k, const std::optional<SensorSpec>& sensor,
                                                      const Atmosphere& air) const;
   /// Returns the inputs that all models share.
   [[nodiscard]] RangeQuestion question(const RangeTask& task, std::optional<double> v50, const Atmosphere& air) const;
-  /// Returns curves and sensor of the models.
+  /// Returns the curves and the sensor that the models use.
   [[nodiscard]] Result<RangeSources> sources(std::vector<TodThreshold> thresholds,
                                              const std::optional<SensorSpec>& sensor) const;
   /// Writes the requested figure and page. `said`: sentences about the results, for the page.
@@ -81,7 +82,7 @@ struct RangeOptions {
   [[nodiscard]] Result<Json> grid_json(const RangeSources& sources, const RangeQuestion& question,
                                        const std::optional<SensorSpec>& sensor) const;
 
-  /// Returns the band of the options, or that of the sensor.
+  /// Returns the band of the options; if absent, the band of the sensor.
   [[nodiscard]] Result<SpectralBand> band_of(const std::optional<SensorSpec>& sensor) const;
   /// Returns the radiative scene. Precondition: a background is given.
   [[nodiscard]] RadiativeScene scene(double delta_t_k, const Atmosphere& air) const;

@@ -15,10 +15,10 @@ namespace todbench {
 /// Returns a listener that shows phases, notes, progress and waits, without the curve.
 [[nodiscard]] ExperimentListener listener_of(Console& console);
 
-/// Display of a run with the curve: a picture on a terminal, otherwise an occasional line. It outlives the run.
+/// Display of a run with the curve: a picture on a terminal, otherwise an occasional line. Must outlive the run.
 class RunDisplay {
  public:
-  /// Viewers of the curve.
+  /// Viewers of the curve: the terminal alone, or other viewers too, for which the curve is always fitted.
   enum class Curve { of_the_terminal, of_others_too };
   RunDisplay(Console& console, const Plan& plan, Curve curve = Curve::of_the_terminal);
 

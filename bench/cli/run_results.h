@@ -11,17 +11,17 @@ namespace todbench {
 
 /// Parts of the output that only some commands have.
 struct RunShown {
-  bool curve = true;     ///< printed; the JSON object has it always
-  bool effects = false;  ///< of the simulated sensor, printed
-  bool why = false;      ///< with the reason of each neutral effect
+  bool curve = true;     ///< prints the curve; the JSON object always contains it
+  bool effects = false;  ///< prints the effects of the simulated sensor
+  bool why = false;      ///< prints the reason for each neutral effect
 };
 
-/// Prints curve, comparison, uncertainty, measures, bill and verdict of a run, or its JSON object, and returns the exit
+/// Prints the curve, comparison, uncertainty, measures, bill and verdict of a run, or its JSON object. Returns the exit
 /// code.
 [[nodiscard]] int show_run(Console& console, const ExperimentOutcome& outcome, const RunShown& shown = {});
 /// Prints the text of show_run().
 void print_run(const Console& console, const ExperimentOutcome& outcome, const RunShown& shown);
-/// Prints the session, or the reason of an early end, and returns the exit code.
+/// Prints the session folder and, after an early end, its reason. Returns the exit code.
 [[nodiscard]] int finish_run(Console& console, const ExperimentOutcome& outcome);
 
 /// Prints the curve as a table.

@@ -12,10 +12,10 @@
 
 namespace todbench {
 
-/// Adds --accept-changed. `accepted` outlives the parser.
+/// Adds --accept-changed. `accepted` must outlive the parser.
 void add_accept_changed(CLI::App& command, bool& accepted);
 
-/// Calls open_session(); reports accepted changes on standard error, also with --quiet.
+/// Calls open_session(), and reports accepted changes on standard error, even with --quiet.
 [[nodiscard]] Result<Session> opened(Console& console, const std::string& folder, const Opening& opening);
 /// Returns "s: changed, removed or added after the session ended: fits.json"; empty if no change was accepted.
 [[nodiscard]] std::string accepted_sentence(const std::string& folder, const Session& session);

@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Opens and starts a recording, by file or by id, and prints its warnings.
+/// Opens and starts the recording `id` (file name or id), and prints its warnings.
 [[nodiscard]] Result<std::unique_ptr<FrameSource>> started_recording(Console& console, const std::string& id);
 
 }  // namespace todbench

@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Arguments of the parts of `todbench sweep`.
+/// Arguments of the subcommands of `todbench sweep`.
 struct SweepArguments {
   /// `file`: sweep file. `scheduler` for `tasks`: parallel, slurm, gridengine, snakemake or make. `engine` for
   /// `submit`: local or slurm. `options_file`: file with scheduler options of the site; empty: none. `csv`, `sqlite`,
