@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compares the instruments of a plan with those that answered.
+// Compares the instruments of a plan with the instruments that answered.
 #pragma once
 
 #include <span>
@@ -21,8 +21,8 @@ struct AnsweredInstrument {
 /// Returns the instruments of a description "ROLE (VENDOR MODEL, serial S); ROLE (...)".
 [[nodiscard]] std::vector<AnsweredInstrument> answered_instruments(std::string_view target);
 
-/// Returns a sentence for each instrument that answered with a serial number that no row states, if a row with a
-/// serial number has its role: that row states the calibration of another instrument.
+/// Returns a sentence for each row that states the calibration of another instrument: the row states a serial number,
+/// and an instrument of its role answered with a serial number that no row states.
 [[nodiscard]] std::vector<std::string> contradicted_instruments(std::span<const InstrumentPlan> rows,
                                                                 std::string_view target);
 

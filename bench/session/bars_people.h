@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Answers of people to the bars and spots that a session kept, and their MRTD: people/bars.json.
+// Answers of people to the bars and spots stored in a session, and their MRTD: people/bars.json.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct BarsAnswer {
   double contrast_k = 0;  ///< reported by the target, signed
   int set_up = 0;
   bool target_left = false, answered_left = false;
-  std::optional<double> response_s{};  ///< empty: not known
+  std::optional<double> response_s{};  ///< time from display to answer; empty: unknown
 };
 
 /// Answers of a person at one sitting.
@@ -45,14 +45,17 @@ struct BarsThreshold {
 /// Returns one threshold for each place of the answers: x before y, low frequencies first, spots last.
 [[nodiscard]] std::vector<BarsThreshold> bars_thresholds(const BarsSitting& sitting);
 
-/// Mean of one place over people. All people judged the same frames. The interval therefore combines the scatter
-/// between people with the contribution of the set-ups that is common to them: (n V - v) / (n - 1) for n people, V the
-/// jackknife variance of the mean over the set-ups and v the mean of those of the people.
+/// Mean of one place over people. All people judged the same frames, so the set-ups contribute an error that is common
+/// to all people. The interval combines the scatter between people with this common variance (n V - v) / (n - 1). n is
+/// the number of people, V the jackknife variance of the mean over the set-ups, and v the mean of the jackknife
+/// variances of the single sittings.
 struct BarsMean {
-  BarsThreshold of{};  ///< the place; without a threshold
+  /// Place of the mean. Its threshold is not set.
+  BarsThreshold of{};
   MeanOverPeople over{};
-  int without = 0;  ///< sittings without a threshold; if any, there is no mean, because it would represent only the
-                    ///< best observers
+  /// Number of sittings without a threshold. If above 0, there is no mean, because it would represent only the best
+  /// observers.
+  int without = 0;
   int answers = 0;  ///< number of answers in all sittings
 };
 /// A person and the thresholds of one sitting.
@@ -65,9 +68,8 @@ struct JudgedBars {
 /// Returns the mean at every place of the sittings, in the order of bars_thresholds().
 [[nodiscard]] std::vector<BarsMean> bars_means(const std::vector<JudgedBars>& sittings);
 
-/// Adds a sitting to people/bars.json of a finished session and lists the file in the manifest. Replaces no earlier
-/// answers. Errors: `io`; `invalid_input` (no manifest, or files that differ from it), in which case no file is
-/// written.
+/// Adds a sitting to people/bars.json of a finished session and lists the file in the manifest. Earlier answers remain.
+/// Errors: `io`; `invalid_input` (no manifest, or files that differ from it), in which case no file is written.
 [[nodiscard]] Result<void> add_bars_sitting(const std::filesystem::path& session, const BarsSitting& sitting);
 /// Reads the sittings of a session that open_session() accepted, in the order of their answers. Errors: `io`;
 /// `invalid_input` with the file.

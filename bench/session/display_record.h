@@ -17,7 +17,7 @@ class JsonFields;
 
 /// Factor that reduces the acuity.
 enum class LimitingFactor {
-  sampling,      ///< distance of the sensor's samples
+  sampling,      ///< distance between the samples of the sensor
   sensor_noise,  ///< all noise of the sensor
   display,       ///< spot, interpolation, veil, black level and gain of the display
   eye,           ///< noise and uncertainty of the person
@@ -30,7 +30,7 @@ inline constexpr std::array all_limiting_factors{LimitingFactor::sampling, Limit
 /// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(LimitingFactor factor);
 
-/// Cost of one factor: 100 (S75 / S75 without it - 1), in percent.
+/// Cost of one factor in percent: 100 (S75 / S75' - 1), with S75' the threshold without this factor.
 struct FactorCost {
   LimitingFactor factor = LimitingFactor::sampling;
   double percent = 0;
@@ -62,7 +62,8 @@ struct DisplayedPoint {
 /// Record that is stored with the results of a session. It does not affect the verdict.
 struct DisplayRecord {
   std::string observer;  ///< name of an observer with an eye
-  /// Empty if this observer gave the answers of the session, so that its curve has these thresholds.
+  /// Empty if this observer gave the answers of the session, because the curve of the session then contains these
+  /// thresholds.
   std::vector<DisplayedPoint> points;
   std::vector<AcuityLimits> limits;
   bool operator==(const DisplayRecord&) const = default;

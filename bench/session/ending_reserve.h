@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Disk space reserved at the start of a session for its end, so that a run that fills the disk can still record it.
+// Disk space reserved at the start of a session for the files of its end, so that a run that fills the disk can still
+// write them.
 #pragma once
 
 #include <filesystem>
@@ -8,15 +9,16 @@
 
 namespace todbench {
 
-/// Files written at the end of a session, in this order. A file without its own reserve may use that of the previous
-/// step but not that of the next, so the manifest can always be written.
+/// Groups of files written at the end of a session, in this order. Each group has a reserve, which is released before
+/// the group is written. A file can use space left over from earlier groups but not the reserves of later groups, so
+/// the manifest can always be written.
 enum class EndingRoom {
   results,   ///< curves and comparison
   state,     ///< log, provenance and verdict
-  manifest,  ///< after the report, which has no reserve
+  manifest,  ///< written after the report, which has no reserve
 };
 
-/// Reserves the space with hidden files in the folder. Errors: `io` with the folder (no space, or a limit).
+/// Reserves the space as hidden files in the folder. Errors: `io` with the folder (no space, or a limit).
 [[nodiscard]] Result<void> take_ending_rooms(const std::filesystem::path& folder);
 /// Releases a reserve; no effect if it does not exist.
 void free_ending_room(const std::filesystem::path& folder, EndingRoom room);

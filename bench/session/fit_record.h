@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fits, curves and comparisons as JSON: objects for other programs, and complete records that read back to equal
-// values.
+// Fits, curves and comparisons as JSON: objects for other programs, and complete records that can be read back without
+// loss.
 #pragma once
 
 #include <optional>

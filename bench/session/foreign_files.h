@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Detection of files in a session that the program did not write. Defined with the manifest.
+// Detection of files in a session that the program did not write. The functions are defined in manifest.cpp.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Answers of a person to the frames of a session, stored with those of the model observer.
+// Answers of a person to the frames of a session, stored next to the answers of the model observer.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,8 @@ class JsonFields;
 
 /// Presentation of a patch; the picture that the person saw can be reproduced from it.
 struct ShownPatch {
-  cv::Mat1f kelvin;                 ///< samples that the model observer judged
+  /// Samples that the model observer judged.
+  cv::Mat1f kelvin;
   double black_k = 0, white_k = 0;  ///< levels shown black and white
   int magnification = 1;            ///< screen pixels per sample; bicubic without a display in the plan
   std::optional<int> limit_ms;      ///< maximum display time; empty: until answered
@@ -36,14 +37,14 @@ struct HumanRecord {
   std::vector<ShownPatch> shown;  ///< one per trial, in order
 };
 
-/// The person behind answers. Empty values: not stated.
+/// Facts about the person who answered. Empty values: not stated.
 struct PersonFacts {
   std::string code;  ///< a name, or a code in its place; empty in records of earlier versions
   std::optional<double> age_years, acuity_decimal;
-  std::optional<double> distance_m, luminance_cd_m2;  ///< from the eye to the screen; of white on the screen
-  std::string screen;                                 ///< in free text
+  std::optional<double> distance_m, luminance_cd_m2;  ///< eye to screen; white on the screen
+  std::string screen;                                 ///< description in free text
   std::string judged_utc;                             ///< end of the answers
-  int training_answers = 0;                           ///< with feedback, before the first answer
+  int training_answers = 0;                           ///< answers with feedback before the first answer that counts
 };
 
 /// Describes a person in records of answers.
@@ -59,7 +60,7 @@ struct PersonRecord {
 /// includes the scatter between people (Student's t of ln S75).
 struct PeopleMean {
   double set_delta_t_k = 0;
-  int people = 0;  ///< with an identified threshold
+  int people = 0;  ///< number of people with an identified threshold
   double s75_mrad = 0;
   std::optional<std::pair<double, double>> ci95_mrad{};  ///< empty: fewer than two people
 };
@@ -77,13 +78,14 @@ struct MeanOverPeople {
 [[nodiscard]] MeanOverPeople mean_over_people(const std::vector<std::string>& codes,
                                               const std::vector<double>& thresholds);
 
-/// Fits the answers like those of the model. Precondition: one patch per answer. Errors: `invalid_input` (no answers).
+/// Fits the answers in the same way as the answers of the model. Precondition: one patch per answer. Errors:
+/// `invalid_input` (no answers).
 [[nodiscard]] Result<HumanRecord> human_record(std::vector<Trial> answers, std::vector<ShownPatch> shown,
                                                const Plan& plan);
 /// Adds the answers of a person to a finished session and lists the files in the manifest: trials_human.csv,
 /// shown_human.csv and fits_human.json for the first person, people/N-trials.csv, people/N-shown.csv and
-/// people/N-fits.json for the N-th, and people/people.json with the facts of all. Replaces no earlier answers. Errors:
-/// `io`; `invalid_input` (no manifest, or files that differ from it), in which case no file is written.
+/// people/N-fits.json for the N-th, and people/people.json with the facts of all. Earlier answers remain. Errors: `io`;
+/// `invalid_input` (no manifest, or files that differ from it), in which case no file is written.
 [[nodiscard]] Result<void> add_person(const std::filesystem::path& session, const PersonRecord& person);
 /// Reads the record of the first person from a session that open_session() accepted; empty if no person has answered.
 /// Errors: `invalid_input` with file and line or key.

@@ -20,7 +20,7 @@ struct RunFigures {
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
   double measures_s = 0;                                 ///< part of wall_s: physical measures
 };
-/// Returns the output of `measure PLAN --json` and `simulate PLAN --json`; the plan of a measured curve has no effects.
+/// Returns the output of `measure PLAN --json` and `simulate PLAN --json`. `plan` has no effects for a measured curve.
 [[nodiscard]] Json curve_json(const TodCurve& curve, const SensorPlan& plan, const RunFigures& figures);
 
 /// Predictions of the command `plan`.

@@ -15,8 +15,8 @@ namespace todbench {
 
 inline constexpr std::string_view manifest_name = "manifest.json";
 
-/// Returns the files of a session, relative to its folder, sorted: the known files in the folder and all files in
-/// inputs/, frames/ and pictures/. Foreign files and manifest.json itself are not included.
+/// Returns the files of a session with paths relative to its folder, sorted: the known files in the folder and all
+/// files in inputs/, frames/ and pictures/. Foreign files and manifest.json itself are not included.
 [[nodiscard]] std::vector<std::string> session_files(const std::filesystem::path& folder);
 /// Returns whether the path can be in session_files(), so that some reader may use the file.
 [[nodiscard]] bool is_session_file(std::string_view path);
@@ -43,11 +43,11 @@ struct ManifestCheck {
 
 /// Reads every file of the folder. Errors: `io` with the path of an unreadable file.
 [[nodiscard]] Result<ManifestCheck> check_manifest(const std::filesystem::path& folder);
-/// Returns whether the manifest confirms the current content of this file; false without a manifest, and for a symbolic
-/// link. Errors: `io` with
-/// the path.
+/// Returns whether the manifest confirms the current content of this file. False without a manifest, and for a symbolic
+/// link. Errors: `io` with the path.
 [[nodiscard]] Result<bool> is_listed(const std::filesystem::path& folder, const std::string& path);
-/// Returns the digest of the existing manifest. Errors: as refresh_manifest().
+/// Returns the digest of the existing manifest. Errors: `io`; `invalid_input` (no manifest, or a manifest that the
+/// program did not write in this form).
 [[nodiscard]] Result<std::string> manifest_digest(const std::filesystem::path& folder);
 
 /// Entry of one file.
@@ -56,7 +56,8 @@ struct ManifestEntry {
   std::string sha256;
   bool operator==(const ManifestEntry&) const = default;
 };
-/// Entries by path. Recorded frames may have many gigabytes, so code that has read a file once passes its entry on.
+/// Entries by path. Recorded frames may have many gigabytes. Code that has read a file therefore passes the entry on,
+/// so that the file is read once.
 using ManifestEntries = std::map<std::string, ManifestEntry>;
 /// Returns the entries of the existing files; reads each file. Errors: `io` with the path.
 [[nodiscard]] Result<ManifestEntries> manifest_entries(const std::filesystem::path& folder);
@@ -71,7 +72,7 @@ using ManifestEntries = std::map<std::string, ManifestEntry>;
 /// Writes manifest.json with the entries of the existing files.
 [[nodiscard]] Result<void> write_manifest(const std::filesystem::path& folder);
 /// Updates the entries of `files` in manifest.json and keeps the others, for example after a report is rebuilt. Errors:
-/// `io`; `invalid_input` (no manifest, or not the one that was written).
+/// `io`; `invalid_input` (no manifest, a manifest that the program did not write in this form, or a signed session).
 [[nodiscard]] Result<void> refresh_manifest(const std::filesystem::path& folder, const std::vector<std::string>& files);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PNG files of measures.json, stored in pictures/ of a session and referred to by name.
+// PNG files of measures.json, which names them. They are stored in the folder pictures/ of a session.
 #pragma once
 
 #include <filesystem>

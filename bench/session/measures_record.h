@@ -21,12 +21,12 @@ struct MeasureLine {
   std::optional<double> value{};
   Interval ci95{};
   std::string conditions{};
-  /// Interval with the budget; empty if the budget has no row that applies to this measure.
+  /// Interval expanded by the uncertainty budget; empty if no row of the budget applies to this measure.
   std::optional<Interval> expanded{};
 };
 
-/// Returns a line in the unit of the quantity (table of quantities). `name`: of the quantity, with a place if any:
-/// "mtf_x (corner)".
+/// Returns a line in the unit of the quantity (table of quantities). `name`: name of the quantity, with its place if it
+/// has one: "mtf_x (corner)".
 [[nodiscard]] MeasureLine measure_line(std::string name, std::optional<double> value, const Interval& ci95,
                                        std::string conditions);
 

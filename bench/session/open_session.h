@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opens an existing session and rejects content that its manifest does not confirm. All readers use this path.
+// Opens an existing session and rejects content that its manifest does not confirm. All readers of sessions use these
+// functions.
 #pragma once
 
 #include <filesystem>
@@ -39,8 +40,8 @@ struct Opening {
   bool accept_cut_off = false;  ///< also runs that were cut off, which have no manifest
 };
 
-/// Calls check_session() and read_session(). Errors: those of both, and `invalid_input` with the reason for a session
-/// that `opening` does not accept.
+/// Checks a session with check_session() and reads it with read_session(). Errors: those of both, and `invalid_input`
+/// with the reason for a session that `opening` does not accept.
 [[nodiscard]] Result<Session> open_session(const std::filesystem::path& folder, const Opening& opening);
 /// Succeeds if open_session() would accept the folder as intact. Call it before writing to a session.
 [[nodiscard]] Result<void> require_intact(const std::filesystem::path& folder);

@@ -17,7 +17,7 @@ struct PixelMap {
   int width = 0, height = 0;
   double black_k = 0, white_k = 0;  ///< levels shown black and white; both 0: a colour picture
   std::string png;
-  std::string note{};  ///< additional remark, a clause
+  std::string note{};  ///< additional remark; empty: none
 };
 
 /// Colours of the defect map in the order of drawing: kind, colour in words, RGB.
@@ -34,7 +34,7 @@ struct DefectColour {
 [[nodiscard]] std::vector<PixelMap> pixel_maps(const CameraMeasures& measures);
 /// Returns the maps as JSON.
 [[nodiscard]] Json pixel_maps_json(const std::vector<PixelMap>& maps);
-/// Parses the maps; empty if the reader has a mistake.
+/// Parses the maps; empty if the reader has recorded an error.
 [[nodiscard]] std::vector<PixelMap> pixel_maps_from(const JsonReader& maps);
 /// Returns whether the maps are base64 PNG files of at least one pixel.
 [[nodiscard]] bool drawable(const std::vector<PixelMap>& maps);

@@ -71,7 +71,8 @@ struct CameraOpticsRecord {
   bool operator==(const CameraOpticsRecord&) const = default;
 };
 
-/// Observer that judged the frames of a session, and the enhancement package applied to them before.
+/// Observer that judged the frames of a session, and the enhancement package applied to the frames before the
+/// judgement.
 struct JudgedBy {
   std::string observer;         ///< name
   std::string observer_sha256;  ///< SHA-256 of the description of the observer
@@ -86,11 +87,12 @@ struct OriginRecord {
   std::string manifest_sha256;  ///< digest of its manifest; empty: it has none
   std::string signed_by;        ///< SHA-256 of the key of its valid signature; empty: not signed
   JudgedBy then, now;
-  bool resumed = false;  ///< the frames are those of the session to its interruption, then those of the camera
+  /// True if the session contains the recorded frames up to the interruption, followed by new frames of the camera.
+  bool resumed = false;
   bool operator==(const OriginRecord&) const = default;
 };
 
-/// Times of the bench that the plan forecast before the run.
+/// Bench times that were forecast from the plan before the run.
 struct TimeForecast {
   double total_s = 0;                     ///< without computing
   std::map<std::string, double> parts_s;  ///< by part of the bill (bench/report/accuracy_bill.h)
@@ -109,12 +111,13 @@ struct Provenance {
   std::optional<CameraRecord> camera;  ///< empty for a simulated curve
   std::string target;                  ///< instruments in words, with serial numbers
   std::vector<InstrumentPlan> instruments;
-  std::vector<ModuleRecord> modules{};  ///< behind camera or twin; the observer last
-  SensorPlan effects;                   ///< of the simulated curve
-  std::optional<RunRecord> run;         ///< of trials.csv
-  /// Comparable with the times of `run`; empty: not measured, a simulated scene, recorded frames, or an early end.
+  std::vector<ModuleRecord> modules{};  ///< modules behind camera or twin; the observer last
+  SensorPlan effects;                   ///< effects of the simulated curve
+  std::optional<RunRecord> run;         ///< run that wrote trials.csv
+  /// Forecast for comparison with the times of `run`. Empty: not measured, a simulated scene, recorded frames, or an
+  /// early end.
   std::optional<TimeForecast> forecast{};
-  std::optional<RunRecord> twin_run;  ///< of trials_simulated.csv
+  std::optional<RunRecord> twin_run;  ///< run that wrote trials_simulated.csv
   std::optional<CameraOpticsRecord> camera_optics{};
   /// The last self-test of this program on this computer; empty: none.
   std::optional<SelftestRecord> selftest{};
@@ -126,8 +129,8 @@ struct Provenance {
 
 /// Returns the number of parts between camera losses; 1: the camera was never lost.
 [[nodiscard]] std::size_t segments(const Provenance& provenance);
-/// Returns whether the run ended early or the camera was lost and came back, so that it is not one continuous run.
-/// Whether all trials were made is stated by `state`.
+/// Returns whether the run was not continuous: it ended early, or the camera was lost and came back. `state` shows
+/// whether all trials were made.
 [[nodiscard]] bool was_interrupted(const Provenance& provenance);
 
 /// Returns the provenance with program, host, start time, seed and instruments of the plan; state running.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Result of the last self-test on this computer, for the sessions measured after it.
+// Result of the last self-test on this computer, which later sessions record in their provenance.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace todbench {
 
 class JsonFields;
 
-/// Result of a self-test (bench/selftest/selftest.h), with the program and the computer for which it holds.
+/// Result of a self-test (bench/selftest/selftest.h), with the program and the computer that it tested.
 struct SelftestRecord {
   std::string utc;
   int passed = 0, failed = 0;

@@ -8,17 +8,17 @@
 
 namespace todbench {
 
-/// Compared curves; tested for adequacy if their session stored no findings.
+/// Compared curves. compare_sessions() tests a curve for adequacy if its session stored no findings.
 struct SessionComparison {
   TodCurve a, b;
   Comparison comparison;
 };
 
-/// Compares the curves of two sessions with `margin_percent`; by default with the smaller margin of their plans, 10 %
-/// if neither has one. Exchanged arguments give inverse ratios and the same verdicts and errors. Sessions with
+/// Compares the curves of two sessions with `margin_percent`. Default: the smaller margin of both plans, or 10 % if no
+/// plan has a margin. Exchanging the arguments inverts the ratios and keeps the verdicts and errors. Sessions with
 /// different plates are compared, with a finding that makes the result inconclusive. Errors: `invalid_input`, one
-/// sentence (a session without a curve, shared trials, another form or lapse rate of the fit, another observer or other
-/// observer parameters), and those of compare().
+/// sentence (a session without a curve, trials that both sessions contain, different forms or lapse rates of the fit,
+/// different observers or observer parameters), and those of compare().
 [[nodiscard]] Result<SessionComparison> compare_sessions(const Session& a, const Session& b,
                                                          std::optional<double> margin_percent);
 

@@ -32,8 +32,8 @@ enum class ExistingFolder {
   number,     ///< creates a sibling folder with suffix -2, -3 ...
 };
 
-/// Returns "session-20260131T123456Z-NAME" with the current time; a second session within the same second needs a
-/// number.
+/// Returns "session-20260131T123456Z-NAME" with the current time. A second session within the same second needs
+/// ExistingFolder::number.
 [[nodiscard]] std::string session_folder_name(const std::string& plan_name);
 
 /// Curve of a session: main curve or simulated twin.
@@ -57,7 +57,7 @@ class SessionFolder {
   /// Writes session.toml. Copies the plates, sensor, observer and letterhead to inputs/ and redirects file references
   /// to the copies. References to built-in descriptions remain names.
   [[nodiscard]] Result<void> write_plan(const LoadedPlan& loaded);
-  /// Writes provenance.json: with state running at the start, and again when more is known.
+  /// Writes provenance.json: at the start with state `running`, and again when more facts are known.
   [[nodiscard]] Result<void> write_provenance(const Provenance& provenance);
   /// Opens trials.csv or trials_simulated.csv.
   [[nodiscard]] Result<TrialsWriter> open_trials(SessionCurve which);
@@ -73,7 +73,7 @@ class SessionFolder {
   /// Writes measures.json and its pictures in pictures/.
   [[nodiscard]] Result<void> write_measures(const std::optional<CameraMeasures>& main,
                                             const std::optional<CameraMeasures>& twin);
-  /// Writes a record of measures_json() in the same way.
+  /// Writes a record that measures_json() returned, in the same way.
   [[nodiscard]] Result<void> write_measures(Json record);
   /// Writes verdict.json.
   [[nodiscard]] Result<void> write_verdict(const Verdict& verdict);
@@ -104,16 +104,16 @@ struct Session {
   std::vector<Trial> twin_trials;
   std::vector<Presentation> presentations;  ///< presentations of `trials`; empty in a session without targets.csv
   std::vector<Presentation> twin_presentations;
-  std::optional<TodCurve> curve;  ///< as fitted; empty if the run ended before the fit
+  std::optional<TodCurve> curve;  ///< fitted curve; empty if the run ended before the fit
   std::optional<TodCurve> twin;
   std::optional<Comparison> comparison;
   std::optional<SessionMeasures> measures;      ///< physical measures; empty if not requested
   std::optional<CurveUncertainty> uncertainty;  ///< uncertainty of `curve`; empty if the plan has no budget
-  std::optional<Verdict> verdict;               ///< as stored; empty if old or cut off
+  std::optional<Verdict> verdict;               ///< stored verdict; empty in older or cut-off sessions
   std::optional<CostFrontier> cost;             ///< accuracy against cost, if measured for this session
   /// Digest of the manifest that confirms these values (ManifestCheck); empty if none does.
   std::string manifest_sha256;
-  /// Files that the run did not write in this form and that were read because the caller accepted changes.
+  /// Files that differ from the files that the run wrote. They were read because the caller accepted changes.
   std::vector<std::string> accepted_changes;
   bool cut_off = false;  ///< no manifest: the values are unconfirmed
   /// Returns false for a run that was interrupted or cut off.
@@ -123,9 +123,9 @@ struct Session {
 /// Reads the files without a check against the manifest, for a session that is being written. All other readers use
 /// open_session(). Errors: `invalid_input` (not a session folder; unreadable file, with path and line or key).
 [[nodiscard]] Result<Session> read_session(const std::filesystem::path& folder);
-/// Returns the reason of an early end of the run; empty if it was complete.
+/// Returns the reason for an early end of the run; empty if the run was complete.
 [[nodiscard]] std::optional<std::string> ended_early(const Session& session);
-/// Returns the stored verdict. A session without one is judged now, and the verdict states this.
+/// Returns the stored verdict. If no verdict is stored, judges the session now; the verdict states this.
 [[nodiscard]] Verdict verdict_of(const Session& session);
 /// Stores a verdict that was made later, and lists it in the manifest. A run that was cut off has no manifest and stays
 /// unchanged. Errors: `io` with the path.

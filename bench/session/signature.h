@@ -37,9 +37,9 @@ struct SessionSignature {
 /// to take.
 [[nodiscard]] Result<void> require_unsigned(const std::filesystem::path& folder);
 
-/// Signs an intact session with a secret key; `signed_utc` is the stated time. The program asks for a passphrase on the
-/// terminal; a stop request ends it. Errors: `invalid_input` (not intact, already signed, no such key, or rejected by
-/// the program, with its message), `not_found` (no such program), `interrupted`.
+/// Signs an intact session with a secret key; `signed_utc`: time of signing to record. The program asks for a
+/// passphrase on the terminal; a stop request ends it. Errors: `invalid_input` (not intact, already signed, no such
+/// key, or rejected by the program, with its message), `not_found` (no such program), `interrupted`.
 [[nodiscard]] Result<SessionSignature> sign_session(const std::filesystem::path& folder, SigningProgram with,
                                                     const std::filesystem::path& secret_key,
                                                     const std::string& signed_utc, const std::stop_token& stop = {});
@@ -54,16 +54,18 @@ struct ReportRevision {
 struct SignatureCheck {
   SessionSignature signature;
   bool valid = false;
-  bool own_key = true;     ///< verified with the key in the folder, which does not prove its owner
+  /// True if the signature was verified with the key in the folder. This does not prove who owns the key.
+  bool own_key = true;
   std::string sentence{};  ///< reason if not valid
   /// Contents confirmed by valid signatures: "manifest.json", "signed_utc" and "revisions".
   std::vector<std::string> covers{};
-  /// SHA-256 of the signed record of each revision, from revision 2 on. A record contains the digest of the one before.
-  /// Nothing in the folder shows that the newest ones were removed; a digest that was kept elsewhere does.
+  /// SHA-256 of the signed record of each revision, from revision 2 on. Each record contains the digest of the previous
+  /// record. The folder alone cannot reveal that the newest revisions were removed; a digest that was kept elsewhere
+  /// can.
   std::vector<std::string> revision_sha256{};
 };
 /// Verifies the signatures of manifest.json, signature.json and the list of revisions, and the digests of the
-/// revisions; empty if the session is not signed. check_session() compares the files with the manifest. Errors:
+/// revisions. Empty if the session is not signed. check_session() compares the files with the manifest. Errors:
 /// `invalid_input` (no such key), `not_found` (no such program).
 [[nodiscard]] Result<std::optional<SignatureCheck>> check_signature(
     const std::filesystem::path& folder, const std::optional<std::filesystem::path>& public_key);
@@ -83,8 +85,8 @@ struct SignatureCheck {
                                                   const std::filesystem::path& secret_key,
                                                   const std::stop_token& stop = {});
 
-/// Returns the files that a signature adds to a session, relative to its folder: the signature and the listed and
-/// signed revisions. Their validity is not checked. Empty if the session is not signed.
+/// Returns the files that a signature adds to a session, with paths relative to its folder: the signature and the
+/// listed and signed revisions. Does not check their validity. Empty if the session is not signed.
 [[nodiscard]] std::vector<std::string> files_of_signature(const std::filesystem::path& folder);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Budget of a session applied to its curve: uncertainty.json, and key "uncertainty" of the JSON output.
+// Uncertainty of the curve of a session by its budget: uncertainty.json, and key "uncertainty" of the JSON output.
 #pragma once
 
 #include "acquisition/base/result.h"
