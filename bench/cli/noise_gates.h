@@ -18,8 +18,8 @@ namespace todbench {
 
 /// Returns whether the share of saturated pixels is so large that the noise is clipped.
 [[nodiscard]] bool noise_clipped(double saturated_share);
-/// Returns whether the noise is so low that rounding to counts distorts it. `unit_per_count`: size of a count in the
-/// unit of the noise; 0: unknown.
+/// Returns whether the noise is so low that, after rounding to counts, it depends on the position of the level between
+/// two counts. `unit_per_count`: size of a count in the unit of the noise; 0: unknown.
 [[nodiscard]] bool noise_too_coarse(double noise, double unit_per_count);
 /// Returns the message about clipped noise.
 [[nodiscard]] std::string clipped_sentence(double saturated_share);

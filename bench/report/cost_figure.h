@@ -10,10 +10,11 @@
 
 namespace todbench {
 
-/// Plot of the error of a result over its computing time: tolerance, draws, trials and planner; the chosen point is
-/// marked. Both axes are logarithmic. Without measurements the axes are empty.
+/// Returns the plot of the error of a result over its computing time for tolerance, draws, trials and planner; the
+/// chosen point is marked. Both axes are logarithmic. The axes are empty without measurements.
 [[nodiscard]] Plot cost_result_plot(const CostFrontier& frontier);
-/// Plot of the error of each numerical knob over computing time; errors below 0.001 % are drawn at 0.001 %.
+/// Returns the plot of the error of each numerical parameter over its computing time; errors below 0.001 % are drawn at
+/// 0.001 %.
 [[nodiscard]] Plot cost_knob_plot(const CostFrontier& frontier);
 /// Returns both figures, one above the other, as an SVG file.
 [[nodiscard]] Result<std::string> cost_document(const CostFrontier& frontier);

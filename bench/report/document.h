@@ -43,7 +43,7 @@ struct RichText {
 [[nodiscard]] RichText missing(std::string_view reason);
 /// Returns `text`, or missing(reason) if it is empty.
 [[nodiscard]] RichText text_or_missing(std::string_view text, std::string_view reason);
-/// Meaning of a word for the reader.
+/// Meaning of a verdict word for the reader.
 enum class Mood { good, bad, open };
 /// Returns a word with its sign and colour.
 [[nodiscard]] RichText badge(std::string_view word, Mood mood);
@@ -81,7 +81,7 @@ struct ValueTable {
 
 /// Figure with its caption.
 struct Figure {
-  Result<Drawing> drawing;  ///< or the reason for its absence
+  Result<Drawing> drawing;  ///< drawing, or the reason for its absence
   std::string caption;
 };
 

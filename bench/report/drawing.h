@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drawing as a value: lines, areas and text with their roles, in units of the drawing. svg.h writes it as text, and the
-// window paints it.
+// Drawing as a value: lines, areas and text with their roles, in units of the drawing. svg.h writes a drawing as text,
+// and the window paints it.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace todbench {
 /// dark shade. Markers and lines differ too, so that a black-and-white print is readable.
 enum class PlotTone { first, second, third, muted };
 
-/// Position in units to the right and down.
+/// Position in units of the drawing: x to the right, y downwards.
 struct Place {
   double x = 0, y = 0;
 };
@@ -67,7 +67,7 @@ struct Label {
 struct Drawing {
   std::string id;           ///< unique on the page; letters, digits, hyphens
   std::string title;        ///< for screen readers
-  std::string description;  ///< for screen readers: visible content
+  std::string description;  ///< description of the visible content, for screen readers
   double width = 0, height = 0;
   Box frame;                  ///< drawn first
   std::vector<Mark> inside;   ///< clipped by the frame, in the order of painting
@@ -92,7 +92,7 @@ struct PenStyle {
 inline constexpr std::array all_pens{Pen::frame,  Pen::grid, Pen::axis,   Pen::reference, Pen::curve, Pen::dashed,
                                      Pen::dotted, Pen::bar,  Pen::marker, Pen::hollow,    Pen::limit, Pen::band};
 
-/// Place of the anchor in the text.
+/// Position of the anchor in the text.
 enum class Anchor { start, middle, end };
 /// Appearance of a label.
 struct LabelStyle {

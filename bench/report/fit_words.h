@@ -8,11 +8,11 @@
 
 namespace todbench {
 
-/// Returns sentences about the function and its fit. Names contrasts whose function differs from the first one, with
-/// the reason.
+/// Returns sentences about the psychometric function and its fit. They name contrasts whose function differs from that
+/// of the first contrast, and the reason.
 [[nodiscard]] std::string form_in_words(const ReportData& data);
-/// Returns sentences about the kind of answers, preceded by a space; empty if unknown. States the frames of each
-/// contrast if they differ, and the twin separately if its answers differ.
+/// Returns sentences about the kind of answers, preceded by a space; empty if unknown. States the number of frames for
+/// each contrast if the numbers differ, and describes the twin separately if its answers differ.
 [[nodiscard]] std::string answers_in_words(const ReportData& data);
 
 }  // namespace todbench

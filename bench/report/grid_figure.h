@@ -18,7 +18,7 @@ struct GridFigure {
   std::vector<std::optional<double>> r75_m;  ///< [size][contrast]
 };
 
-/// Returns the plot with at most six sizes spread over those of the grid; empty if no target has a range.
+/// Returns the plot with at most six sizes, spread over the sizes of the grid; empty if no target has a range.
 [[nodiscard]] std::optional<Plot> grid_plot(const GridFigure& grid);
 /// Returns a section with the figure of every model that has one.
 [[nodiscard]] Section grid_section(const std::vector<GridFigure>& grids);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures of the physical measures in the report: one function for each measure, in the file of the measure.
+// Figures of the physical measures in the report. Each measure has one function, defined in the file of the measure.
 #pragma once
 
 #include <optional>
@@ -11,37 +11,38 @@
 
 namespace todbench {
 
-// Each returns the figures of the camera (or of the simulated sensor, if `camera` is false) and of the twin; empty if
-// the measure is absent for both.
+// Each function returns the figures of the camera (or of the simulated sensor, if `camera` is false) and of the twin;
+// empty if both lack the measure.
 
-/// Returns the signal transfer.
+/// Returns figures of the signal transfer.
 [[nodiscard]] std::optional<FigurePairs> transfer_figures(const SessionMeasures& measures, bool camera);
 /// Returns one figure for each place and axis: camera with intervals, twin, closed form.
 [[nodiscard]] std::optional<FigurePairs> mtf_figures(const SessionMeasures& measures, bool camera);
-/// Returns the drift of the camera alone.
+/// Returns figures of the drift, of the camera alone.
 [[nodiscard]] std::optional<FigurePairs> drift_figures(const SessionMeasures& measures, bool camera);
-/// Returns the response to contrast steps.
+/// Returns figures of the response to contrast steps.
 [[nodiscard]] std::optional<FigurePairs> response_figures(const SessionMeasures& measures, bool camera);
-/// Returns the distortion.
+/// Returns figures of the distortion.
 [[nodiscard]] std::optional<FigurePairs> geometry_figures(const SessionMeasures& measures, bool camera);
 /// Returns one figure for each axis: best and worst sampling phase of every group of bars, and the closed form.
 [[nodiscard]] std::optional<FigurePairs> ctf_figures(const SessionMeasures& measures, bool camera);
-/// Returns the loss of apertures and gain of opaque spots against their size, with the fitted curve.
+/// Returns figures of the loss of apertures and the gain of opaque spots against their size, with the fitted curve.
 [[nodiscard]] std::optional<FigurePairs> source_size_figures(const SessionMeasures& measures, bool camera);
-/// Returns the error against temperature, of the camera alone.
+/// Returns figures of the temperature error against temperature, of the camera alone.
 [[nodiscard]] std::optional<FigurePairs> absolute_figures(const SessionMeasures& measures, bool camera);
-/// Returns the histogram over the frames of all runs, of the camera alone.
+/// Returns histograms of the latency over the frames of all runs, of the camera alone.
 [[nodiscard]] std::optional<FigurePairs> latency_figures(const SessionMeasures& measures, bool camera);
-/// Returns the levels against contrast, and the settling after steps, of the camera alone.
+/// Returns figures of the levels against contrast and of the settling after steps, of the camera alone.
 [[nodiscard]] std::optional<FigurePairs> gain_control_figures(const SessionMeasures& measures, bool camera);
-/// Returns the remaining part of steps over time with the fitted first-order response; empty if it cannot be drawn.
+/// Returns a figure of the remaining part of contrast steps over time, with the fitted first-order response; empty if
+/// it cannot be drawn.
 [[nodiscard]] std::optional<Figure> settling_figure(const StepResponse& response, const std::string& id,
                                                     const std::string& who);
-/// Returns one figure of the MRTD for each axis, with the best phase, and one figure of the spots.
+/// Returns one figure of the MRTD for each axis, including the MRTD at the best phase, and one figure of the spots.
 [[nodiscard]] std::optional<FigurePairs> mrtd_figures(const SessionMeasures& measures, bool camera);
 /// Returns a contrast with three digits, or "none".
 [[nodiscard]] RichText contrast_cell(const std::optional<double>& value);
-/// Returns the tables of bars and spots as an acceptance document lists them: frequency, contrast of each polarity,
+/// Returns the tables of bars and spots in the layout of an acceptance document: frequency, contrast of each polarity,
 /// offset, half difference of each axis, best phase. `who` names the side in the captions.
 [[nodiscard]] std::vector<Table> mrtd_tables(const MrtdMeasure& mrtd, const std::string& who);
 /// Returns the maps of the camera next to those of the twin.

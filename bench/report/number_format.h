@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers for people: independent of the locale, with the digits that their interval supports; NaN is shown as a dash.
+// Numbers for people: independent of the locale, with as many digits as their interval justifies. NaN is shown as a
+// dash.
 #pragma once
 
 #include <optional>
@@ -10,10 +11,11 @@
 
 namespace todbench {
 
-/// Returns `decimals` digits after the point in ASCII; "-0.00" becomes "0.00"; a dash for a non-finite value.
+/// Returns the value in ASCII with `decimals` digits after the point; "-0.00" becomes "0.00"; a dash for a non-finite
+/// value.
 [[nodiscard]] std::string fixed(double value, int decimals);
 
-/// Returns fixed() with the sign U+2212, for text.
+/// Returns the same as fixed(), with the minus sign U+2212, for text.
 [[nodiscard]] std::string shown(double value, int decimals);
 
 /// Returns `digits` significant digits without exponent: 0.0702, 16.9, 1500.
@@ -22,9 +24,9 @@ namespace todbench {
 /// Returns a stated number with up to six significant digits and without trailing zeros: 20, 0.25, 47.5.
 [[nodiscard]] std::string stated(double value);
 
-/// Returns the digits after the point that leave two significant digits of the half-width of the interval (JCGM
-/// 100:2008, 7.2.6). If one limit is open, the distance from the value to the other limit is used; without any width,
-/// the value has three significant digits.
+/// Returns the number of digits after the point with which the half-width of the interval has two significant digits
+/// (JCGM 100:2008, 7.2.6). If one limit is open, the distance from the value to the other limit replaces the
+/// half-width. Without any width, the value has three significant digits.
 [[nodiscard]] int decimals_for(std::optional<double> value, const Interval& interval);
 
 /// Returns "0.480 [0.468, 0.493]"; "0.480 [≥ 0.468]" if one limit is open; "≥ 0.468" without a value; a dash if both

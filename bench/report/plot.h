@@ -19,8 +19,8 @@ enum class PlotMarker { none, disc, square, bar };
 enum class PlotLine { none, solid, dashed, dotted };
 
 /// Point, or only its bounds. An interval with one open limit is drawn as an arrow to the edge of the plot; with two
-/// open limits it is not drawn. A point without x or y has no marker and interrupts the line; its interval needs the
-/// other coordinate.
+/// open limits it is not drawn. A point without x or y has no marker and interrupts the line. Its interval is drawn
+/// only if the other coordinate exists.
 struct PlotPoint {
   std::optional<double> x, y;
   Interval x_interval, y_interval;
@@ -32,7 +32,7 @@ struct PlotSeries {
   PlotTone tone = PlotTone::first;
   PlotMarker marker = PlotMarker::disc;
   PlotLine line = PlotLine::none;
-  PlotLine legend_line = PlotLine::none;  ///< in the legend only, if the line is a separate series
+  PlotLine legend_line = PlotLine::none;  ///< line in the legend only, if the line itself is a separate series
   std::vector<PlotPoint> points;
   double dodge_px = 0;  ///< shifts the series down, so that intervals of two series do not hide each other
 };
@@ -54,12 +54,13 @@ struct PlotReference {
 struct Plot {
   std::string id;                    ///< unique on the page; letters, digits, hyphens
   std::string title;                 ///< for screen readers
-  std::string description;           ///< for screen readers: visible content
+  std::string description;           ///< description of the visible content, for screen readers
   double width = 860, height = 410;  ///< user units; the picture scales with the page
   PlotAxis x, y;
   std::vector<PlotBand> bands;
   std::vector<PlotReference> references;
-  std::vector<PlotSeries> series;  ///< later series are drawn over earlier ones; in the legend they come first
+  /// Later series are drawn over earlier ones and precede them in the legend.
+  std::vector<PlotSeries> series;
 };
 
 /// Draws the plot with axes, ticks and legend. Errors: `invalid_input` (an axis that cannot be drawn).

@@ -33,8 +33,8 @@
 
 namespace todbench {
 
-/// Verdict at the top of a report. A report only shows decisions that were made before. The verdict of an interrupted
-/// run or of a run without limits is never "pass".
+/// Verdict at the top of a report. A report shows decisions that the session contains and makes none itself. The
+/// verdict of an interrupted run or of a run without limits is never "pass".
 enum class ReportVerdict {
   pass,          ///< every limit is met
   fail,          ///< a limit is not met
@@ -56,12 +56,12 @@ struct ReportData {
   std::vector<std::pair<std::string, std::string>> conditions;
 
   std::optional<SourceInfo> camera;  ///< unit under test, as read from the device; empty: simulation only
-  /// Temperature scale of the camera in words; empty: as the scale in `camera` describes it.
+  /// Temperature scale of the camera in words; empty: description from `camera`.
   std::string temperature_scale;
-  double distance_m = 0;                   ///< entrance pupil to plate, or focal length of a collimator; 0: not stated
-  bool collimated = false;                 ///< the plate is behind a collimator
-  double ifov_mrad = 0;                    ///< 0: not stated
-  double air_temperature_c = 20;           ///< air temperature of the plan
+  double distance_m = 0;          ///< from entrance pupil to plate, or focal length of a collimator; 0: not stated
+  bool collimated = false;        ///< the plate is behind a collimator
+  double ifov_mrad = 0;           ///< 0: not stated
+  double air_temperature_c = 20;  ///< air temperature of the plan
   std::optional<ViewedDisplay> display{};  ///< display of the plan; empty: none
   std::string target;                      ///< instruments with serial numbers
   std::vector<TargetPlate> plates;         ///< in identity mounting
@@ -70,7 +70,7 @@ struct ReportData {
   std::string observer;                     ///< name and version
 
   FitOptions fit;
-  std::optional<TodCurve> measured;  ///< by the camera
+  std::optional<TodCurve> measured;  ///< curve of the camera
   std::optional<TodCurve> simulated;
   std::optional<TodCurve> human;         ///< answers of the first person to patches of the camera's frames
   std::vector<PersonRecord> people;      ///< all people, without their trials and pictures
@@ -79,7 +79,8 @@ struct ReportData {
 
   std::optional<SessionMeasures> measures;  ///< physical measures; empty: not requested
 
-  std::optional<DisplayRecord> at_display;  ///< in addition to the results; it does not affect the verdict
+  /// Limits of the acuity and thresholds at the display. They do not affect the verdict.
+  std::optional<DisplayRecord> at_display;
 
   /// Uncertainty of the measured curve, or of the curve of a simulation alone.
   std::optional<CurveUncertainty> uncertainty;
@@ -90,16 +91,16 @@ struct ReportData {
 
   std::optional<SensorSpec> simulated_sensor;
   SensorPlan plan;                   ///< effects of the simulated sensor
-  std::optional<CostFrontier> cost;  ///< cost of accuracy in time; empty: not measured, no section
+  std::optional<CostFrontier> cost;  ///< time cost of accuracy; empty: not measured, no section
 
-  double wall_s = 0;                       ///< of the run with its physical measures, without the twin; 0: not stated
-  double measures_s = 0;                   ///< part of wall_s: physical measures; 0: none, or not stated
-  std::optional<TimeForecast> forecast{};  ///< of the plan; empty: none that is comparable
-  double twin_s = 0;                       ///< of the simulation of the twin; 0: not stated
+  double wall_s = 0;      ///< duration of the run with its physical measures, without the twin; 0: not stated
+  double measures_s = 0;  ///< part of wall_s: physical measures; 0: none, or not stated
+  std::optional<TimeForecast> forecast{};  ///< forecast of the plan; empty: no comparable forecast
+  double twin_s = 0;                       ///< duration of the simulation of the twin; 0: not stated
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
   std::uint64_t frames_lost = 0;
-  double temporal_noise_k = 0;  ///< per pixel; 0: not measured
+  double temporal_noise_k = 0;  ///< temporal noise of a pixel; 0: not measured
 
   std::optional<Letterhead> letterhead;  ///< letterhead of the laboratory; empty: default layout
 
@@ -113,16 +114,16 @@ struct ReportData {
   std::vector<Interruption> interruptions;  ///< camera losses after which the run continued
 };
 
-/// Returns the verdict to show. It is the decision of the verdict, with these exceptions: for an interrupted run only a
-/// fail is shown, otherwise `interrupted`; a pass without limits is shown as `not_judged`; changed files give
-/// `changed`.
+/// Returns the verdict to show: the decision of the session's verdict, with three exceptions. Changed files always give
+/// `changed`. An interrupted run gives `fail` if it failed, otherwise `interrupted`. A pass without limits, or no
+/// verdict, gives `not_judged`.
 [[nodiscard]] ReportVerdict report_verdict(const ReportData& data);
 
 /// Returns the TOD curve of the report.
 [[nodiscard]] Plot tod_plot(const ReportData& data);
-/// Returns one psychometric function per contrast.
+/// Returns one plot of psychometric functions per contrast.
 [[nodiscard]] std::vector<Plot> psychometric_plots(const ReportData& data);
-/// Returns the psychometric functions of person and model; empty without a person.
+/// Returns plots of the psychometric functions of person and model; empty without a person.
 [[nodiscard]] std::vector<Plot> human_plots(const ReportData& data);
 
 /// Returns the bill of the run; empty if it has no curve or no time.

@@ -30,7 +30,7 @@ inline constexpr std::string_view one_sided_note =
 [[nodiscard]] Mood mood_of(VerdictKind verdict);
 [[nodiscard]] Mood mood_of(ComparisonVerdict verdict);
 
-/// Return the sections of results; an empty section is absent from the report.
+/// Return the sections with results. If a function returns empty, the report lacks this section.
 [[nodiscard]] VerdictBox verdict_box(const ReportData& data);
 [[nodiscard]] Section limits_section(const ReportData& data);
 [[nodiscard]] Section curve_section(const ReportData& data);

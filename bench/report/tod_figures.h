@@ -15,12 +15,13 @@ namespace todbench {
 struct AnswersAtSize {
   double size_mrad = 0;
   double correct = 0, total = 0;  ///< sum of probabilities for graded answers
-  /// Number of groups (presentations or places), and their sums of squares and products of `correct` and `total`.
+  /// Number of groups (presentations or places), and sums over the groups: squares of `correct`, products of `correct`
+  /// and `total`, squares of `total`.
   double groups = 0, squares = 0, products = 0, total_squares = 0;
   bool graded = false;
 };
 
-/// Sums levels of equal size (to 1e-6) and returns them by increasing size, without levels that have no trials.
+/// Sums levels of equal size (within 1e-6). Returns the sums by increasing size and omits sizes without trials.
 [[nodiscard]] std::vector<AnswersAtSize> answers_by_size(const TodPoint& point);
 
 /// Returns Wilson's 95 % score interval of a proportion (Wilson 1927; Brown, Cai and DasGupta 2001, eq. 4). Both limits
@@ -28,9 +29,9 @@ struct AnswersAtSize {
 [[nodiscard]] Interval wilson_interval(double correct, double total);
 
 /// Returns the 95 % interval of the proportion at a size. Binary answers: Wilson's interval, with all answers treated
-/// as independent. Graded answers scatter less than binomially: mean -+ t s over K presentations, limited to 0 and 1,
-/// with s^2 = K / (K - 1) sum (c - m n)^2 / N^2 for a ratio of sums; open below two presentations. It is longer than
-/// necessary if the phases of a set-up cancel.
+/// as independent. Graded answers scatter less than binomially, so their interval is m -+ t s over K presentations,
+/// limited to 0 and 1, with s^2 = K / (K - 1) sum (c - m n)^2 / N^2 for the ratio of sums m. It is open below two
+/// presentations, and wider than necessary if the effects of the phases in a set-up cancel.
 [[nodiscard]] Interval proportion_interval(const AnswersAtSize& answers);
 
 /// Curve with its name in figures.
@@ -51,14 +52,14 @@ struct DrawnLimit {
 /// Returns the same figure with a linear (the convention) or logarithmic acuity axis.
 [[nodiscard]] Plot with_acuity_axis(Plot tod_figure, AxisScale scale);
 
-/// Point of a curve with its name; a null point is left out.
+/// Point of a curve with its name. A null point is not drawn.
 struct NamedPoint {
   std::string name;
   const TodPoint* point = nullptr;  ///< borrowed for the call
 };
 /// Returns the plot of the proportion correct with its intervals (proportion_interval()) against size, with fitted
-/// functions, 75 % and 25 % lines and the 95 % intervals of the thresholds. `id` is unique on the page. The axis
-/// contains the answered sizes and `expected_sizes_mrad`, the sizes that a run will show.
+/// functions, 75 % and 25 % lines and the 95 % intervals of the thresholds. `id` is unique on the page. The size axis
+/// covers the answered sizes and `expected_sizes_mrad`, the sizes that a run will show.
 [[nodiscard]] Plot psychometric_figure(const std::string& id, const NamedPoint& first, const NamedPoint& second,
                                        PsychometricForm form, std::span<const double> expected_sizes_mrad = {});
 

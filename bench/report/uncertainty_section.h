@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Section of a report about the contents of the expanded intervals.
+// Section of a report that lists the sources of uncertainty in the expanded intervals.
 #pragma once
 
 #include <optional>

@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Relation of the figures of people to the parameters of the observer.
+/// Relation between the figures of people and the parameters of the observer.
 enum class VisionRole {
   fitted,     ///< some or all of these figures were used in the fit of the parameters
   chosen,     ///< a parameter was chosen with knowledge of these figures
