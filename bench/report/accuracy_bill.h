@@ -44,7 +44,7 @@ struct BillInput {
   const SensorPlan& effects;
   double wall_s = 0;           ///< duration of the run with its physical measures, without the twin
   double measures_s = 0;       ///< part of wall_s: physical measures with their changes of the target; 0: none
-  std::size_t quantities = 0;  ///< number of physical measures
+  std::size_t quantities = 0;  ///< number of quantities of the physical measures
   const TimeForecast* forecast = nullptr;  ///< forecast of the plan; null: no comparable forecast
   double twin_s = 0;                       ///< duration of the simulation of the twin, after the run; 0: none
 };
