@@ -14,14 +14,14 @@ namespace todbench {
 /// Options of the reproduction.
 struct EoVistaOptions {
   Accuracy accuracy;
-  int presentations = 24;  ///< pictures of the emulated camera at each contrast; 40 answers each
-  int dsr_frames = 16;     ///< averaged by DSR2
+  int presentations = 24;  ///< pictures of the emulated camera at each contrast, with 40 answers per picture
+  int dsr_frames = 16;     ///< number of frames that DSR2 averages
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
 
-/// Computes the reproduction on as many threads as there are processors, at most eight; the result does not depend on
-/// their number. Errors: `interrupted`, and those of its parts.
+/// Computes the reproduction with one thread per processor, at most eight. The result does not depend on the number of
+/// threads. Errors: `interrupted`, and those of its parts.
 [[nodiscard]] Result<Reproduction> reproduce_eo_vista(const EoVistaOptions& options);
 
 }  // namespace todbench

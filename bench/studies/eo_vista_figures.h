@@ -24,13 +24,14 @@ inline constexpr const char* hvs = "hvs-1";
 inline constexpr const char* human = "human-like-1";
 }  // namespace eo_vista
 
-/// Returns every figure of sections 4.1 and 4.2, from the thresholds of all sensors and observers and the ranges of
-/// `hvs`; `graded_ranges`: those of by_graded_answers().
+/// Returns every figure of sections 4.1 and 4.2, from the thresholds of all sensors and observers and the ranges of the
+/// observer `hvs`. `graded_ranges`: ranges from the thresholds of by_graded_answers().
 [[nodiscard]] std::vector<ReproducedFigure> eo_vista_figures(const std::vector<ReproducedThreshold>& thresholds,
                                                              const std::vector<ReproducedRange>& ranges,
                                                              const std::vector<ReproducedRange>& graded_ranges = {});
 
-/// Returns the thresholds with graded answers instead of binary ones if available.
+/// Returns the thresholds. If a threshold has a value from graded answers, this value replaces the one from binary
+/// answers.
 [[nodiscard]] std::vector<ReproducedThreshold> by_graded_answers(std::vector<ReproducedThreshold> thresholds);
 
 /// Ratio a / b of two acuities with its 95 % interval, for independent errors on the logarithmic scale.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Simulated identification experiment with a set of targets, compared with the prediction of the TOD curve.
+// Simulated identification experiment with a set of targets, and the prediction of its result from the TOD curve.
 #pragma once
 
 #include <functional>
@@ -39,17 +39,17 @@ struct IdentificationStudyTask {
   int decisions = 2000;
   /// M75 with which the TOD curve predicts the range.
   double m75 = 5.1;
-  /// Motion of the targets in the picture.
+  /// Motion of the targets across the picture.
   SceneMotion motion{};
-  /// Use of the frames of a pass.
+  /// How the observer uses the frames of a pass.
   SequenceObserver sequence = SequenceObserver::single_frame;
-  /// Frames of a pass.
+  /// Number of frames of a pass.
   int frames = 8;
   /// Stages behind the camera, as in IdentificationTask.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   /// Largest distance over which the stages spread a picture, as in IdentificationTask.
   std::optional<int> stage_reach_px{};
-  /// Structure parameter Cn2 of the turbulence along the path of each range; 0: that of the sensor.
+  /// Structure parameter Cn2 of the turbulence along the path of each range; 0: value of the sensor.
   double cn2_m_minus_2_3 = 0;
   /// Seed of all random numbers.
   std::uint64_t seed = 1;
@@ -89,7 +89,7 @@ struct IdentificationStudy {
   /// S75 of each point of `tod` over the open parameters of an observer with an eye; empty if a limit of the parameters
   /// gives no S75.
   std::vector<std::optional<std::pair<double, double>>> tod_spread_mrad;
-  std::optional<RangePrediction> predicted;  ///< by the TOD curve with the m75 of the task; empty: no curve
+  std::optional<RangePrediction> predicted;  ///< predicted from the TOD curve with the m75 of the task; empty: no curve
   /// Spread of the predicted range, as SetCriterion::spread.
   std::optional<std::pair<double, double>> predicted_spread_m;
   std::vector<std::string> notes;
@@ -98,16 +98,16 @@ struct IdentificationStudy {
 /// Returns the experiment of a study: views, ranges with their air. Errors: those of study_identification().
 [[nodiscard]] Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task);
 
-/// Returns the criteria of the set for a range with 75 % correct that was found otherwise, for example with people: M75
+/// Returns the criteria of the set for a range with 75 % correct from another experiment, for example with people: M75
 /// and V50 on the TOD curve of the observer of the task, and the predicted range. `points` is empty. Errors: those of
 /// study_identification().
 [[nodiscard]] Result<IdentificationStudy> rate_found_range(const IdentificationStudyTask& task,
                                                            const SetCriterion& r75_m);
 
 /// Runs the study. The proportion over range is made monotone (pool adjacent violators) and interpolated linearly in ln
-/// range. The TOD curve is that of a single frame in the same motion. With stages, with sums of frames, and with motion
-/// through turbulent paths there is no curve; a note states this. Errors: `invalid_input` (ranges that do not increase
-/// or exceed the air's table; those of identify()), `interrupted`.
+/// range. The TOD curve holds for a single frame in the same motion. There is no curve with stages, with sums of
+/// frames, or with motion through turbulent paths; a note states this. Errors: `invalid_input` (ranges that do not
+/// increase, or that exceed the table of the air), those of identify(), `interrupted`.
 [[nodiscard]] Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task);
 
 }  // namespace todbench

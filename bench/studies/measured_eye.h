@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Eye model that is compared with figures of people.
+// Eye model for comparison with published figures of people.
 #pragma once
 
 #include <cmath>
@@ -10,19 +10,20 @@
 
 namespace todbench {
 
-/// Eye with its acuity for Landolt rings.
+/// Eye model and its thresholds for Landolt rings.
 class MeasuredEye {
  public:
   explicit MeasuredEye(const EyeParameters& eye) : eye_(eye) {}
   /// Returns the filter of the eye at a luminance.
   [[nodiscard]] EyeFilter at(double luminance_cd_m2) const { return {eye_, luminance_cd_m2}; }
-  /// Returns 1/arcmin of the gap of the smallest Landolt ring that is recognised; NaN: no ring is recognised at this
-  /// contrast.
+  /// Returns the acuity in 1/arcmin: 1 / gap of the smallest Landolt ring that the eye recognises. NaN: the eye
+  /// recognises no ring at this contrast.
   [[nodiscard]] double acuity(double luminance_cd_m2, double contrast) const {
     const auto size = ring_.threshold_deg(at(luminance_cd_m2), eye_.contrast_noise, contrast, acuity_share);
     return size ? sqrt_area_ / (60 * *size) : std::numeric_limits<double>::quiet_NaN();
   }
-  /// Returns the threshold contrast of a Landolt ring whose gap is `gap_arcmin`; NaN: it is recognised at no contrast.
+  /// Returns the threshold contrast of a Landolt ring whose gap is `gap_arcmin`; NaN: the eye does not recognise it at
+  /// any contrast.
   [[nodiscard]] double threshold_contrast(double luminance_cd_m2, double gap_arcmin) const {
     return ring_
         .threshold_contrast(at(luminance_cd_m2), eye_.contrast_noise, gap_arcmin / 60 * sqrt_area_, acuity_share)

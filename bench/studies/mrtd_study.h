@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MRTD of a simulated camera with the observer of the triangles, compared with the MRTD by formula: numbers and page.
+// MRTD of a simulated camera, judged by the observer of the triangles and compared with the MRTD from a formula:
+// numbers and page.
 #pragma once
 
 #include <optional>
@@ -27,10 +28,10 @@ struct MrtdStudyTask {
 struct MrtdStudyPoint {
   VirtualMrtdPoint found;
   Interval threshold_ci95_k;  ///< 95 % interval of the threshold, from the draws
-  /// The threshold, if it is an MRTD (see study_mrtd()).
+  /// The threshold as MRTD; empty if the threshold is not an MRTD (see study_mrtd()).
   std::optional<double> mrtd_k;
   std::string reason;               ///< reason of a missing MRTD; empty if there is one
-  std::optional<double> formula_k;  ///< MRTD after the structure of FLIR92; empty beyond Nyquist
+  std::optional<double> formula_k;  ///< MRTD by a formula with the structure of FLIR92; empty beyond Nyquist
 };
 
 /// Results of one axis.
@@ -46,8 +47,9 @@ struct MrtdStudy {
   std::vector<MrtdAxisCurve> curves;
 };
 
-/// Runs the study. Contrasts are those of the bars: the contrast that the camera needs, divided by the transmittance.
-/// Errors: `invalid_input` (a range beyond the air's table, or with no transmittance), those of virtual_mrtd().
+/// Runs the study. Contrasts are stated at the bars: the contrast that the camera needs, divided by the transmittance.
+/// Errors: `invalid_input` (a range beyond the table of the air, or at which the air transmits nothing), those of
+/// virtual_mrtd().
 ///
 /// A threshold beyond Nyquist is not an MRTD, because no phase shows four bars there. A threshold by the criterion
 /// `detection` is not an MRTD either, because an algorithm still discriminates alias patterns in which people see no

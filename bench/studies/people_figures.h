@@ -84,7 +84,7 @@ inline constexpr ModelFestBlob modelfest_blobs[] = {{30, 1.636}, {8.43, 1.526}, 
 inline constexpr double modelfest_line = 0.934, modelfest_dipole = 0.626, modelfest_disc = 1.626;
 
 /// Loss of acuity when reading Japanese text at reduced contrast, 14 people (abstract, CiNii 1522262179753702912):
-/// logMAR above that at full contrast.
+/// increase of logMAR relative to full contrast.
 struct ReadingLoss {
   double contrast, log_mar;
 };

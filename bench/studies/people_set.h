@@ -26,14 +26,14 @@ using PngEncoder = std::function<Result<std::string>(const cv::Mat1b& picture)>;
 [[nodiscard]] Result<void> write_people_set(const std::filesystem::path& folder, const PersonExperiment& experiment,
                                             const PngEncoder& png);
 
-/// Reads a filled answers.csv. Errors: `invalid_input` "FILE:LINE: ..." (columns missing, an answer missing or unknown,
-/// a picture twice or missing, answers of another experiment).
+/// Reads a filled answers.csv. Errors: `invalid_input` "FILE:LINE: ..." (a missing column, a missing or unknown answer,
+/// a repeated or missing picture, answers of another experiment).
 [[nodiscard]] Result<std::vector<ExperimentAnswer>> read_people_answers(const std::filesystem::path& file,
                                                                         const PersonExperiment& experiment);
 
 /// Answers of all people at one range. The interval is Wilson's for the effective number of independent answers that
-/// explains the scatter between people. For one person, or if the scatter is smaller than by chance, it is Wilson's for
-/// the number of answers.
+/// explains the scatter between people. For one person, or if the scatter is smaller than expected by chance, it is
+/// Wilson's interval for the number of answers.
 struct PeopleShare {
   int shown = 0, right = 0;
   Interval ci95;
@@ -45,7 +45,8 @@ struct PeopleResult {
   /// Range with 75 % correct. One person: as PersonResult. Several people: mean of the logarithms, with Hartung and
   /// Knapp's interval (people.h); empty if fewer than two people have a range with an interval.
   SetCriterion r75_m;
-  std::optional<double> between_sd;  ///< standard deviation of ln R75 between people, in addition to their own errors
+  /// Standard deviation of ln R75 between people, without the errors of the single values.
+  std::optional<double> between_sd;
 };
 /// Evaluates the answers. Precondition: at least one person; every person answered every trial.
 [[nodiscard]] PeopleResult people_result(const PersonExperiment& experiment,
@@ -59,7 +60,7 @@ struct StatedM75 {
 };
 /// Writes the file. Errors: `io`.
 [[nodiscard]] Result<void> write_m75_file(const std::filesystem::path& file, const StatedM75& m75);
-/// Reads the file. Errors: `invalid_input` with the file (no such file, another schema, values beyond 1e-6 to 1e6).
+/// Reads the file. Errors: `invalid_input` with the file (no such file, another schema, values outside 1e-6 to 1e6).
 [[nodiscard]] Result<StatedM75> read_m75_file(const std::filesystem::path& file);
 
 }  // namespace todbench

@@ -19,7 +19,7 @@ namespace todbench {
 
 /// Task of the person.
 enum class PersonTask {
-  identify,  ///< one picture: which target of the set is it?
+  identify,  ///< question about one picture: which target of the set is it?
   bars  ///< by BarCriterion: which of two pictures has the four bars, or: are the bars of one picture resolved (yes or
         ///< no)?
 };
@@ -39,8 +39,8 @@ struct PersonTrial {
   std::size_t condition = 0;
   std::size_t truth = 0;   ///< index of the alternative; for `bars_resolved` 1 if no bars are shown
   std::size_t aspect = 0;  ///< identify
-  std::size_t phase = 0;   ///< bars; for identify it follows from the draw
-  /// Number of the noise draw; for bars that of the left interval, and the next number for the right one.
+  std::size_t phase = 0;   ///< phase of the bars; for `identify` it follows from the draw
+  /// Number of the noise draw. For bars, the left interval uses this number and the right interval the next one.
   std::uint64_t draw = 0;
 };
 
@@ -61,7 +61,7 @@ class PersonExperiment {
   [[nodiscard]] static Result<PersonExperiment> of_bars(const VirtualMrtdTask& task, int per_contrast);
 
   [[nodiscard]] PersonTask task() const { return task_; }
-  /// Returns the criterion; for bars only.
+  /// Returns the criterion. Only used for bars.
   [[nodiscard]] BarCriterion criterion() const { return criterion_; }
   [[nodiscard]] const std::vector<std::string>& alternatives() const { return alternatives_; }
   /// Returns a small picture of every alternative, 0 black to 1 white.
@@ -105,7 +105,7 @@ struct PersonShare {
   Interval ci95;
 };
 
-/// Evaluation of the answers. The 75 % values are crossings as in Crossing75; their intervals come from resampling the
+/// Evaluation of the answers. The 75 % values are crossings as in Crossing75. Their intervals come from resampling the
 /// answers of every condition.
 struct PersonResult {
   std::vector<PersonShare> conditions;                   ///< in their order
@@ -121,8 +121,8 @@ struct PersonResult {
 [[nodiscard]] PersonResult person_result(const PersonExperiment& experiment,
                                          const std::vector<ExperimentAnswer>& answers);
 
-/// Writes person.json (with the facts of the person and the keys of `identify` or `mrtd` of the same meaning) and
-/// answers.csv into a new folder. Errors: `invalid_input` if it exists; `io` with the path.
+/// Writes person.json and answers.csv into a new folder. person.json contains the facts about the person, and results
+/// under the same keys as the output of `identify` or `mrtd`. Errors: `invalid_input` if it exists; `io` with the path.
 [[nodiscard]] Result<void> write_person(const std::filesystem::path& folder, const PersonExperiment& experiment,
                                         const std::vector<ExperimentAnswer>& answers, const PersonFacts& person,
                                         bool complete);

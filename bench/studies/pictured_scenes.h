@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scenes and sets of targets with the pictures and recordings that their files name.
+// Loading of scenes and target sets, including the pictures and recordings that their files name.
 #pragma once
 
 #include <string_view>
@@ -10,9 +10,10 @@
 
 namespace todbench {
 
-/// Calls load_scene() with support for TIFF and .npy pictures.
+/// Loads a scene with load_scene(), with support for TIFF and .npy pictures.
 [[nodiscard]] Result<FieldScene> scene_with_pictures(std::string_view reference);
-/// Calls load_target_set() with support for every recording with temperatures, and for masks in TIFF and .npy.
+/// Loads a target set with load_target_set(), with support for every recording with temperatures, and for masks in TIFF
+/// and .npy.
 [[nodiscard]] Result<TargetSet> target_set_with_pictures(std::string_view reference);
 
 }  // namespace todbench

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Acuity of the observer under the noise of a recording, compared with that under white noise of the same strength.
+// Acuity of the observer with the noise of a recording, compared with the acuity with white noise of the same standard
+// deviation.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +23,10 @@ struct RecordedNoise {
   std::vector<cv::Mat1f> frames;
   std::vector<int> block_of_frame;
   int blocks = 0;
-  cv::Mat1b usable;         ///< as given, or 0 if the scene moved: temporal noise above twice that of the median pixel
-  double usable_share = 0;  ///< share of usable pixels
+  /// Usable pixels as given to recorded_noise(). If none were given, 0 marks pixels where the scene moved: their
+  /// temporal noise exceeds twice that of the median pixel.
+  cv::Mat1b usable;
+  double usable_share = 0;    ///< share of usable pixels
   double temporal_noise = 0;  ///< standard deviation over usable pixels, within a block
   /// Correlations of neighbours in a row and in a column, without changes of the whole frame.
   double correlation_x = 0, correlation_y = 0;
@@ -32,8 +35,8 @@ struct RecordedNoise {
 };
 
 /// Uses blocks of `block_frames` frames (at least 2); incomplete blocks are ignored. `usable`: the pixels to use
-/// (TemporalNoise::usable); empty: they are found here. Errors: `invalid_input` (fewer frames than a block, frames of
-/// different sizes, no noise).
+/// (TemporalNoise::usable); empty: the function determines them. Errors: `invalid_input` (fewer frames than a block,
+/// frames of different sizes, no noise).
 [[nodiscard]] Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int block_frames,
                                                    const cv::Mat1b& usable = {});
 
@@ -43,10 +46,11 @@ struct RecordedNoise {
 /// Options of the study.
 struct RealNoiseOptions {
   std::vector<double> contrast_over_noise{1.6, 3.3, 8, 28};  ///< 3.3: 0.23 K at a NETD of 0.07 K
-  /// Noise of a whole frame over that of successive frames (TemporalNoise::whole_to_successive): the effect of noise
-  /// correlated in time on the observer.
+  /// Noise of a whole frame divided by the noise of successive frames (TemporalNoise::whole_to_successive). It
+  /// quantifies how noise that is correlated in time affects the observer.
   double whole_to_successive = 1;
-  int draws = 2000;  ///< noise windows per size, spread over the recording and common to all phases and orientations
+  /// Noise windows per size, spread over the recording. All phases and orientations use the same windows.
+  int draws = 2000;
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
@@ -61,7 +65,7 @@ struct SizeEstimate {
 struct NoiseAcuity {
   double contrast_over_noise = 0;
   SizeEstimate real, white;
-  double acuity_ratio = 0;  ///< under real noise / under white noise of the same standard deviation
+  double acuity_ratio = 0;  ///< with real noise / with white noise of the same standard deviation
   Interval ratio_ci95;      ///< Student's t with blocks - 1 degrees of freedom
   /// Standard deviation of the noise in the differences of the templates, relative to white noise of the same strength:
   /// the part that affects the observer's decisions. Below 1 the noise has less effect than white noise of the same
@@ -69,17 +73,19 @@ struct NoiseAcuity {
   double template_noise_ratio = 1;
   /// Ratio of acuities predicted for white noise of template_noise_ratio times the strength.
   double predicted_ratio = 1;
-  /// Acuity under white noise of the strength of a whole frame, over that under white noise of the strength of
-  /// successive frames; the latter is the unit of the contrast. Empty: the stronger noise leaves no threshold.
+  /// Acuity with white noise of the strength of a whole frame, divided by the acuity with white noise of the strength
+  /// of successive frames. Contrasts are in units of the noise of successive frames. Empty: there is no threshold with
+  /// the stronger noise.
   std::optional<double> memory_acuity_ratio;
-  /// Shares of template_noise_ratio^2: pixel noise, rows and columns from the 3D components, and the remainder: noise
-  /// correlated over neighbouring pixels (positive: low frequencies).
+  /// Shares of template_noise_ratio^2: pixel noise, row noise and column noise from the 3-D components. The remainder
+  /// is noise correlated over neighbouring pixels (positive: low frequencies).
   double pixel_share = 1, row_share = 0, column_share = 0, correlated_share = 0;
 };
 
-/// Adds images of triangles through `sensor` (whose pitch is that of the pixels of the recording) to noise windows of
-/// the recording, and lets the observer answer. With fewer than 4 blocks, the intervals come from 16 parts of the
-/// picture instead. Errors: `invalid_input` if a contrast has no threshold or every window contains a moving scene.
+/// Adds images of triangles through `sensor` to noise windows of the recording, and lets the observer answer. The pitch
+/// of `sensor` is the pitch of the pixels of the recording. With fewer than 4 blocks, the intervals come from 16 parts
+/// of the picture instead. Errors: `invalid_input` if a contrast has no threshold or every window contains a moving
+/// scene.
 [[nodiscard]] Result<std::vector<NoiseAcuity>> real_noise_study(const RecordedNoise& noise, const SensorSpec& sensor,
                                                                 TemplateObserver& observer,
                                                                 const RealNoiseOptions& options);

@@ -29,7 +29,7 @@ struct ScenePicturesTask {
   SceneView view{};      ///< range and position of the scene
   SceneMotion motion{};  ///< motion of the picture across the detectors: the target moves, or the camera turns
   Accuracy accuracy{};
-  /// Stages behind the camera; they receive as many frames of the same motion as they store. Empty: none.
+  /// Stages behind the camera. They receive as many frames of the same motion as their memory stores. Empty: none.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   EffectPlannerOptions effects{};  ///< options of the effect planner
   std::uint64_t seed = 1;
@@ -40,7 +40,7 @@ struct ScenePicturesTask {
 struct SceneStage {
   std::string name;         ///< name of its files: "1-scene"
   std::string title, note;  ///< for people
-  cv::Mat1f kelvin;         ///< above the background, equivalent kelvin
+  cv::Mat1f kelvin;         ///< equivalent kelvin above the background
   double pixels_per_pitch = 1;
 };
 
@@ -51,7 +51,7 @@ struct AirDecision {
   std::string reason;
 };
 
-/// Returns whether an effect is one of the air. Its decision is then listed with those of the air.
+/// Returns whether an effect belongs to the air. Its decision is then listed with the decisions about the air.
 [[nodiscard]] constexpr bool is_of_air(Effect effect) {
   return effect == Effect::turbulence || effect == Effect::image_dance;
 }
@@ -59,16 +59,18 @@ struct AirDecision {
 /// Effect of the turbulence on this camera.
 struct TurbulenceSeen {
   TurbulentPath path{};
-  double r0_m = 0;                             ///< coherence diameter, spherical wave (Fried 1966)
-  double mtf_at_nyquist = 1;                   ///< long exposure, at the Nyquist frequency of the samples
-  double tilt_sd_mrad = 0, tilt_sd_pitch = 0;  ///< image motion of short frames, per axis; part of the long exposure
+  double r0_m = 0;            ///< coherence diameter, spherical wave (Fried 1966)
+  double mtf_at_nyquist = 1;  ///< long exposure, at the Nyquist frequency of the samples
+  /// Standard deviation of the image motion between short exposures, per axis. The long exposure includes it.
+  double tilt_sd_mrad = 0, tilt_sd_pitch = 0;
 };
 
 /// Pictures and numbers of all stages.
 struct ScenePictures {
-  /// At the sensor, optics, detector, sampled, noise, display, with stages behind them, observer.
+  /// Pictures at the sensor, behind the optics, on the detectors, sampled, with noise, on the display, behind the
+  /// stages (if any), and after the filter of the observer.
   std::vector<SceneStage> stages;
-  cv::Mat1f frame;                         ///< the camera's whole frame, as displayed, behind the stages
+  cv::Mat1f frame;                         ///< whole frame of the camera as displayed, behind the stages
   std::optional<double> judged_gain;       ///< gain of the stages; their picture is divided by it
   double grey_low_k = 0, grey_high_k = 1;  ///< black and white of every picture, above the background
   double background_k = 300;               ///< camera reading of the background: scene, air and one conversion
@@ -80,10 +82,10 @@ struct ScenePictures {
   std::optional<TurbulenceSeen> turbulence;  ///< empty if there is no turbulence
 };
 
-/// Renders the stages. Stages 1 to 3 are finer than the detectors, 4 and 5 have one pixel per sample, 6 and 7 eight per
-/// sample. The effects that are needed at the contrast of the target are simulated, or all effects if no size has a
-/// threshold at this contrast. Errors: `invalid_input` (a range beyond the air's table), `not_identifiable` (no
-/// contrast behind the stages), those of scene_signal_k() and of the stages.
+/// Renders the stages. Pictures 1 to 3 are finer than the detectors, 4 and 5 have one pixel per sample, the later ones
+/// eight per sample and axis. The effects that are needed at the contrast of the target are simulated, or all effects
+/// if no size has a threshold at this contrast. Errors: `invalid_input` (a range beyond the table of the air),
+/// `not_identifiable` (no contrast behind the stages), those of scene_signal_k() and of the stages.
 [[nodiscard]] Result<ScenePictures> scene_pictures(const ScenePicturesTask& task);
 
 /// Returns a picture of 8 bits, black at low and white at high, enlarged by an integer factor until the longer side has

@@ -15,14 +15,14 @@ namespace todbench {
 
 /// Frame behind the stages.
 struct StagedFrame {
-  cv::Mat1f kelvin;  ///< above the mean of the frame without a scene, divided by the gain
-  double gain = 1;   ///< gain of the scene at rest, by least squares over a field
+  cv::Mat1f kelvin;  ///< signal above the mean of the frame without a scene, divided by the gain
+  double gain = 1;   ///< gain of the contrast of a scene at rest, by least squares over `field`
 };
 
-/// Passes the counts of successive frames through new stages and returns the last. `signals`: signal in kelvin above
-/// the background of the frames before the returned one, and of the returned one, whose noise has index 0. The gain is
-/// computed from the last frame with and without the scene in the same noise. Errors: those of the stages;
-/// `not_identifiable` (no contrast behind the stages).
+/// Passes the counts of successive frames through newly created stages and returns the last frame. `signals`: signals
+/// of the frames in kelvin above the background; the last one belongs to the returned frame, whose noise has index 0.
+/// The gain is computed from the last frame with the scene at rest and without the scene, both with the same noise.
+/// Errors: those of the stages; `not_identifiable` (no contrast behind the stages).
 [[nodiscard]] Result<StagedFrame> behind_stages(const SensorModel& model,
                                                 const std::function<std::vector<std::unique_ptr<ChainStage>>()>& stages,
                                                 const std::vector<cv::Mat1f>& signals, double background_k,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Comparison of an observer with an eye with every quoted figure of people: detection, acuity, reading, microscan.
+// Comparison of an observer that has an eye with all quoted figures of people: detection, acuity, reading, microscan.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct VisionOptions {
                                                          const VisionOptions& options);
 
 /// Returns the acuity of people for a Landolt ring in 1/arcmin of the gap (Ikeda, Noda and Yamaguchi, quoted by
-/// saecanet.com); people, criterion and range are not stated there.
+/// saecanet.com). The source does not state the people, the criterion and the valid range.
 [[nodiscard]] double landolt_acuity_of_people(double luminance_cd_m2, double contrast_percent);
 
 }  // namespace todbench

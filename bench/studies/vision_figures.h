@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures of people from a file, with the corresponding figures of an observer with an eye.
+// Figures of people from a file, and the corresponding figures of an observer that has an eye.
 #pragma once
 
 #include <filesystem>
