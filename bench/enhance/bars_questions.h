@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decisions of a person between the windows of bars that a session kept: shown in the program's window, or as pictures
-// in a folder.
+// Decisions of a person between the windows of bars stored in a session: shown in the window of the program, or as
+// pictures in a folder.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,8 @@ namespace todbench {
 
 /// Selection of decisions.
 struct BarsRequest {
-  /// Uses all places. Otherwise only the bars of each axis nearest to `frequency_per_pitch`, and the spot nearest to
-  /// `spot_px`.
+  /// If true, uses all places. Otherwise uses the bars of each axis with the frequency nearest to
+  /// `frequency_per_pitch`, and the spot with the size nearest to `spot_px`.
   bool all_places = false;
   /// Frequency in cycles per pitch, as in the plan.
   double frequency_per_pitch = 0.25;
@@ -29,7 +29,8 @@ struct BarsRequest {
   std::uint64_t seed = 1;
 };
 
-/// One decision: two windows of one place, contrast and set-up, of two frames if more than one is kept.
+/// One decision between two windows of the same place, contrast and set-up. The windows come from two frames if the
+/// session keeps more than one.
 struct BarsQuestion {
   std::size_t target_picture = 0, other_picture = 0;  ///< in KeptBars::pictures
   bool target_left = false;
@@ -42,7 +43,7 @@ struct BarsQuestion {
 /// interpolation. The grey scale spans the larger of three contrasts and six standard deviations of both windows. It
 /// does not depend on the side of the target.
 [[nodiscard]] cv::Mat1b bars_picture(const KeptBars& kept, const BarsQuestion& question, int magnification);
-/// Returns the answer to a decision, for the record.
+/// Returns the answer to a decision in the form of the record.
 [[nodiscard]] BarsAnswer bars_answer(const KeptBars& kept, const BarsQuestion& question, bool answered_left);
 
 /// Writes the pictures of all decisions to a new folder (0001.png ...), answers.csv with an empty answer for each, and

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Blind judgement by a person of the pictures of several sources (camera, twin, enhanced, super-resolved), in one mixed
-// order.
+// Blind judgement: a person judges the pictures of several sources (camera, twin, enhanced, super-resolved) in one
+// mixed order.
 #pragma once
 
 #include <cstdint>
@@ -20,18 +20,20 @@
 
 namespace todbench {
 
-/// Pictures of one origin.
+/// Pictures of one source.
 struct BlindSource {
   std::string name;           ///< "camera", "simulated", or the name of a package
   int samples_per_pixel = 1;  ///< samples per pixel and axis of the patches of the source
   std::vector<JudgedTrial> trials;
 };
 
-/// Patch as shown. The program does not reveal the source before the last answer.
+/// Patch as shown to the person. The program does not reveal its source before the last answer.
 struct BlindPatch {
   std::size_t source = 0;
-  JudgedTrial judged;         ///< cut to the field that all sources have in common
-  int samples_per_pixel = 1;  ///< a person sees a pixel at one size, however many samples it has
+  JudgedTrial judged;  ///< patch, cut to the field that all sources have in common
+  /// Samples per pixel and axis. A pixel has the same size on the screen for every source, whatever its number of
+  /// samples.
+  int samples_per_pixel = 1;
 };
 
 /// Answer to a patch.
@@ -45,19 +47,20 @@ struct BlindAnswer {
 struct BlindResult {
   std::vector<std::string> sources;
   std::vector<HumanRecord> records;  ///< one per source
-  std::vector<Comparison> ratios;  ///< of the second and later sources; empty values where why_withheld() has a reason
+  /// Ratios of the second and later sources to the first. A ratio has no value if why_withheld() returns a reason.
+  std::vector<Comparison> ratios;
 };
 
-/// Replays the recorded frames of a session, and again through each package; the sessions of the model observer go to
-/// `folder`/sources. First the camera, then its twin if `with_twin`, then the packages. Errors: those of
-/// replay_session() and judge_again(); `invalid_input` (two packages of one name).
+/// Replays the recorded frames of a session without a package and through each package. Returns the sources in this
+/// order: camera, its twin if `with_twin`, packages. Writes the sessions of the model observer to `folder`/sources.
+/// Errors: those of replay_session() and judge_again(); `invalid_input` (two packages of one name).
 [[nodiscard]] Result<std::vector<BlindSource>> blind_sources(const std::filesystem::path& session,
                                                              const std::vector<EnhancementPackage>& packages,
                                                              bool with_twin, const std::filesystem::path& folder,
                                                              const ExperimentListener& listener, std::stop_token stop);
 
-/// Returns `per_size` patches of each source for each contrast and size, all in one random order of the seed. Errors:
-/// `invalid_input` (no source, or sources without common contrasts and sizes).
+/// Returns `per_size` patches of each source for each contrast and size, all in one random order that follows from the
+/// seed. Errors: `invalid_input` (no source, or sources without common contrasts and sizes).
 [[nodiscard]] Result<std::vector<BlindPatch>> blind_order(const std::vector<BlindSource>& sources, int per_size,
                                                           std::uint64_t seed);
 
@@ -66,8 +69,8 @@ struct BlindResult {
 [[nodiscard]] Result<BlindResult> blind_result(const std::vector<std::string>& sources,
                                                const std::vector<BlindAnswer>& answers, const Plan& plan);
 
-/// Returns why the ratio of a source to the first source has no value at a contrast: the threshold of one of them may
-/// not be used. Empty: the ratio is stated.
+/// Returns the reason why the ratio of a source to the first source has no value at a contrast: the threshold of one of
+/// them may not be used. Empty: the ratio has a value.
 [[nodiscard]] std::string why_withheld(const BlindResult& result, std::size_t source, double set_delta_t_k);
 /// Returns the exit code: 0 if every threshold of every source may be used (why_undecided()), otherwise 3.
 [[nodiscard]] int exit_code(const BlindResult& result);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decision which results of compared chains may be used, by the gates of a measurement.
+// Decides which results of compared chains may be used, with the same criteria as for a measurement.
 #pragma once
 
 #include <string>
@@ -9,23 +9,25 @@
 
 namespace todbench {
 
-/// Returns the reason why a point of the curve of `name` may not be used: no threshold, no interval, or a finding that
-/// makes it unfit. Empty: it may be used.
+/// Returns the reason why a point may not be used, in a sentence about `name`: no threshold, no interval, or a finding
+/// that makes it unfit. Empty: it may be used.
 [[nodiscard]] std::string why_undecided(const std::string& name, const TodPoint& point);
-/// Returns the reason why the point of a curve may not be used: no threshold, no interval, or a finding that makes it
-/// unfit. Empty: it may be used.
+/// Returns the reason why the point of a result at this contrast may not be used: no answers, no threshold, no
+/// interval, or a finding that makes it unfit. Empty: it may be used.
 [[nodiscard]] std::string why_undecided(const PackageResult& result, double set_delta_t_k);
-/// Removes the ratios to `without` at contrasts at which either point may not be used, and stores the reason.
+/// Removes the values of ratios at contrasts at which the point of `with` or of `without` may not be used, and stores
+/// the reason.
 void withhold_undecided(std::vector<PairedRatio>& ratios, const PackageResult& with, const PackageResult& without);
-/// Returns the exit code of a result without an error: as for a measurement, 3 if a point may not be used, otherwise 0.
+/// Returns the exit code of a result without an error, as for a measurement: 3 if a point may not be used or there are
+/// no points, otherwise 0.
 [[nodiscard]] int exit_code(const PackageResult& result);
 /// Returns the acuity of a point that has a threshold with an interval.
 [[nodiscard]] std::optional<double> identified_acuity_per_mrad(const TodPoint& point);
-/// Mean gain and noise of a point over its set-ups, as judged. Only with stages behind the camera.
+/// Gain and noise of a judged point, averaged over its set-ups. Only exists with stages behind the camera.
 struct JudgedPoint {
-  double gain = 0;        ///< contrast behind the stages over that in front of them
+  double gain = 0;        ///< contrast behind the stages divided by the contrast in front of them
   double gain_error = 0;  ///< standard error
-  double noise_k = 0;     ///< passed to the observer, referred to the contrast in front of the stages
+  double noise_k = 0;     ///< noise that is passed to the observer, referred to the contrast in front of the stages
 };
 /// Returns gain and noise at a contrast; empty without stages behind the camera.
 [[nodiscard]] std::optional<JudgedPoint> judged_point(const PackageResult& result, double set_delta_t_k);

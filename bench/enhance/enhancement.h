@@ -20,32 +20,33 @@
 
 namespace todbench {
 
-/// Acuity with a package over acuity without, at one contrast.
+/// Acuity with a package divided by the acuity without it, at one contrast.
 struct PairedRatio {
   double set_delta_t_k = 0;
   std::optional<double> ratio;  ///< empty: a threshold is missing
-  /// Jackknife of ln ratio over at most 20 groups of whole presentations, which are left out of both runs together,
-  /// with Student's t. Common variation cancels, in particular the noise of the frames. If fewer than ten answers
-  /// differ, the interval is at least as wide as unseen_ln_ratio(). It has no width if the observer judged equal
-  /// pictures.
+  /// 95 % interval by a jackknife of ln ratio with Student's t. It leaves out groups of whole presentations (at most
+  /// 20) from both runs together. Variation common to both runs cancels, in particular the noise of the frames. If
+  /// fewer than ten answers differ, the interval is at least as wide as unseen_ln_ratio(). The interval has no width if
+  /// the observer judged equal pictures.
   Interval ci95;
-  /// Lowest and highest ratio by the observer as stated and by the observers at both limits of its open parameters,
-  /// each used in both runs. Not a confidence interval. Empty: no open parameters, or a threshold is missing.
+  /// Lowest and highest ratio from three observers, each used in both runs: the observer as stated, and the observers
+  /// at both limits of its open parameters. Not a confidence interval. Empty: no open parameters, or a threshold is
+  /// missing.
   std::optional<std::pair<double, double>> spread{};
-  std::string withheld{};  ///< reason why the ratio is withheld: a point may not be used
+  std::string withheld{};  ///< reason why the ratio has no value: a point may not be used
 };
 /// Result of one package, or without a package.
 struct PackageResult {
   std::string name;
   std::vector<Trial> trials;
-  EndTrials at_ends{};              ///< with an eye: trials at both limits of the open parameters
+  EndTrials at_ends{};              ///< for an observer with an eye: trials at both limits of the open parameters
   TodCurve curve;                   ///< empty if no fit was possible
-  std::vector<PairedRatio> ratios;  ///< to the result without a package; empty for that result itself
+  std::vector<PairedRatio> ratios;  ///< ratios to the result without a package; empty for that result itself
   double frame_ms = 0;              ///< median processing time of its stages per frame
   std::size_t frames = 0, clipped_pixels = 0;
   int samples_per_pixel = 1;             ///< samples per pixel and axis of the judged pictures
   std::vector<JudgedContrast> judged;    ///< by set-up and contrast; empty: no stages
-  cv::Mat1w picture;                     ///< picture of one frame, the same frame for all results
+  cv::Mat1w picture;                     ///< picture of one frame; the same frame for all results
   std::optional<Error> error;            ///< reason of an early end or a failed measurement; the trials so far are kept
   std::vector<std::string> error_lines;  ///< standard error of its modules, the first hundred lines
 };
@@ -67,20 +68,20 @@ struct EnhancementOptions {
 };
 /// Simulates the plan's sensor with every effect, once without and once with each package, with the same random
 /// numbers: the exposures are identical bit for bit. After a change of the target, as many exposures are discarded as
-/// the package with the longest memory stores. Place of the plate and contrast come from the pictures of the camera
-/// itself. If a package fails, its result contains the error, and the other packages continue. For an observer with an
-/// eye, the observers at both limits of its open parameters judge the same patches, which gives thresholds and ratios a
-/// spread; otherwise a warning states the reason. Errors: `invalid_input` for a plan whose schedule depends on the
-/// answers; those of the simulation without a package.
+/// the package with the longest memory stores. The place of the plate and the contrast are measured in the pictures of
+/// the camera itself. If a package fails, its result contains the error, and the other packages continue. For an
+/// observer with an eye, the observers at both limits of its open parameters judge the same patches, so that thresholds
+/// and ratios have a spread. If this is not possible, a warning states the reason. Errors: `invalid_input` for a plan
+/// whose schedule depends on the answers; those of the simulation without a package.
 [[nodiscard]] Result<Enhancement> compare_packages(const LoadedPlan& loaded,
                                                    const std::vector<EnhancementPackage>& packages,
                                                    const EnhancementOptions& options, std::stop_token stop);
 
-/// Returns the plan of a session, to measure it again from its recording. Errors: those of open_session().
+/// Returns the plan of a session for another evaluation of its recorded frames. Errors: those of open_session().
 [[nodiscard]] Result<LoadedPlan> recorded_plan(const std::filesystem::path& session, const Opening& opening);
-/// Compares the packages with the recorded frames of a session whose plan is `loaded`. Without a package the answers
-/// are those of the session. After a change, at most as many frames can be discarded as the run discarded; a warning
-/// names packages that store more frames. Errors: those of compare_packages() and open_recorded_bench().
+/// Compares the packages with the recorded frames of a session whose plan is `loaded`. The answers without a package
+/// equal the answers of the session. After a change, at most as many frames can be discarded as the run discarded; a
+/// warning names packages that store more frames. Errors: those of compare_packages() and open_recorded_bench().
 [[nodiscard]] Result<Enhancement> compare_packages_recorded(const std::filesystem::path& session,
                                                             const LoadedPlan& loaded,
                                                             const std::vector<EnhancementPackage>& packages,
@@ -98,8 +99,8 @@ struct EnhancementOptions {
 /// Returns the number of exposures after which a change no longer affects the output of the sensor's modules and of the
 /// package. The numbers of successive stages add up.
 [[nodiscard]] int memory_frames(const SensorSpec& sensor, const EnhancementPackage& package);
-/// Fails with `invalid_input` for a plan that would show each package different frames, or whose psychometric functions
-/// are those of the sensor alone.
+/// Fails with `invalid_input` for a plan that would show different frames to each package, or that uses psychometric
+/// functions of the sensor, which do not include a package.
 [[nodiscard]] Result<void> check_paired_plan(const Plan& plan);
 
 /// Returns the paired ratios of two runs of the same presentations.

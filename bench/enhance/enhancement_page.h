@@ -11,8 +11,8 @@
 
 namespace todbench {
 
-/// Returns a page with the curves compared to the one without a package, ratios with paired intervals, times, failures,
-/// sources of the packages. The page contains no times of day and no host names.
+/// Returns a page with the curves, compared with the curve without a package, the ratios with paired intervals, times,
+/// failures, and the sources of the packages. The page contains no times of day and no host names.
 [[nodiscard]] Document enhancement_page(const LoadedPlan& loaded, const std::vector<EnhancementPackage>& packages,
                                         const Enhancement& enhancement);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Repeated judgement of the recorded frames of a session, by another observer or through an enhancement package.
+// Second judgement of the recorded frames of a session, by another observer or through an enhancement package.
 #pragma once
 
 #include <filesystem>
@@ -13,20 +13,20 @@
 
 namespace todbench {
 
-/// Observer, package and display of the new judgement. An empty member keeps that of the session.
+/// Observer, package and display of the new judgement. An empty member keeps the choice of the session.
 struct JudgeRequest {
   std::string observer{};                       ///< name or file
-  std::optional<EnhancementPackage> package{};  ///< behind the camera and its twin
-  std::optional<ViewedDisplay> display{};       ///< for an observer with an eye
+  std::optional<EnhancementPackage> package{};  ///< package behind the camera and its twin
+  std::optional<ViewedDisplay> display{};       ///< display for an observer with an eye
 };
 
-/// Runs the plan of the session on its recorded frames, simulates the twin, compares and judges, into a new session
-/// that names its origin. The same observer without a package gives the same trials and the same curve. With a package
-/// the answers are right or wrong and fitted with a Weibull function, because the functions of the sensor do not
-/// include it. Manifest and signature of the session are verified first. Errors: those of open_recorded_run() and
-/// measure_on_bench(); `invalid_input` for an adaptive schedule, whose frames follow from the answers, for grey levels
-/// with a package, for a missing display that the observer requires, and for an invalid signature; `not_found` if the
-/// program that verifies the signature is missing.
+/// Runs the plan of the session on its recorded frames, simulates the twin, compares and judges. Writes a new session
+/// that names its origin. The same observer without a package gives the same trials and the same curve. With a package,
+/// the answers are right or wrong and are fitted with a Weibull function, because the psychometric functions of the
+/// sensor do not include the package. Manifest and signature of the session are verified first. Errors: those of
+/// open_recorded_run() and measure_on_bench(); `invalid_input` for an adaptive schedule, whose frames follow from the
+/// answers, for grey levels with a package, for a missing display that the observer requires, and for an invalid
+/// signature; `not_found` if the program that verifies the signature is missing.
 [[nodiscard]] Result<ExperimentOutcome> judge_again(const std::filesystem::path& session, const JudgeRequest& request,
                                                     ExperimentOptions options, const ExperimentListener& listener,
                                                     std::stop_token stop, const Opening& opening = {},

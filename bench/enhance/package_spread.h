@@ -26,21 +26,22 @@ struct EndTrials {
 };
 
 /// Observers at both limits of the open parameters. They judge the patches of a run after the observer itself, so that
-/// frames, modules and packages are computed once. Reusable for all packages, which share the templates.
+/// frames, modules and packages are computed once. One object serves all packages, so that they share the templates.
 class OpenEnds {
  public:
   /// Creates no observers if `observer` has no eye.
   explicit OpenEnds(const TemplateObserverSpec& observer);
-  /// Appends the answers of both observers to the patch of a trial. They use the random numbers of the observer itself.
-  /// `options` are those of the run.
+  /// Lets both observers judge the patch of a trial and appends their answers to `into`. They use the same random
+  /// numbers as the observer itself. `options` are those of the run.
   void judge(const Trial& trial, const Patch& patch, const MeasurementOptions& options, EndTrials& into);
 
  private:
   std::vector<std::unique_ptr<TemplateObserver>> ends_;
 };
 
-/// Adds the spreads to the thresholds of one result and to its ratios to `none` (null for that result itself). Returns
-/// one sentence for each threshold that has no spread although the observer has an eye.
+/// Adds the spreads to the thresholds of one result and to its ratios. `none`: result without a package; null if
+/// `result` is this result. Returns one sentence for each threshold that has no spread although the observer has an
+/// eye.
 [[nodiscard]] std::vector<std::string> add_spreads(const FitOptions& options, const PackageResult* none,
                                                    PackageResult& result);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scan of a pixel by a stage for super-resolution: the stage moves the plate between the frames of a camera.
+// Scan for super-resolution: a stage moves the plate by parts of a pixel between the frames of a camera.
 #pragma once
 
 #include <functional>
@@ -27,12 +27,12 @@ struct StageScan {
 /// set shifts, or the pixel has no size. A move that fails ends the run with `integrity`, or `interrupted`.
 [[nodiscard]] Result<std::string> scan_with_stage(OpenedBench& bench, const StageScan& scan);
 
-/// Returns the required number of places along an axis of a pixel, for each super-resolution by a known scan in the
-/// package.
+/// Returns the required number of places of a pixel along each axis, for each super-resolution stage of the package
+/// that uses a known scan.
 [[nodiscard]] std::vector<int> scan_factors(const EnhancementPackage& package);
 
-/// Fails with `invalid_input` for a package with a scan that differs from the dither of sensor or stage, because
-/// super-resolution would combine wrong places.
+/// Fails with `invalid_input` if the scan of a package differs from the dither of sensor or stage, because
+/// super-resolution would then combine frames at wrong places.
 [[nodiscard]] Result<void> check_scans(const std::vector<EnhancementPackage>& packages, int dither);
 
 /// Returns ExperimentHost::on_opened for a stage that scans steps x steps places of a pixel: it calls
