@@ -16,7 +16,7 @@ enum class ModelKind { sensor, observer, package };
 /// Returns the name of the kind.
 [[nodiscard]] std::string_view to_string(ModelKind kind);
 
-/// One side of the comparison. Only the members of its kind are set.
+/// One side of the comparison. Only the members that belong to `kind` are set.
 struct ComparedModel {
   ModelKind kind = ModelKind::sensor;
   std::string name, reference, sha256;
@@ -40,7 +40,7 @@ struct PixelDifference {
   cv::Point largest_at{};
   std::string reason;
 };
-/// Modulus of the transfer functions along x. For observers it is that of their blur. Absent if a model is a program.
+/// Modulus of the transfer functions along x; for observers, the modulus of their blur. Absent if a model is a program.
 struct TransferPoint {
   double frequency_per_mrad = 0;
   double a = 0, b = 0;
@@ -53,7 +53,7 @@ struct ModelComparison {
   std::vector<TransferPoint> transfer;
   std::optional<double> parts_at_per_mrad;  ///< lowest frequency at which the moduli differ by more than 0.01
   PackageResult result_a, result_b;
-  std::vector<PairedRatio> ratios;  ///< acuity of B over that of A
+  std::vector<PairedRatio> ratios;  ///< acuity of B divided by the acuity of A
   std::vector<std::string> notes;
 };
 
@@ -63,7 +63,7 @@ struct ModelComparison {
 [[nodiscard]] Result<ModelComparison> compare_models(const LoadedPlan& plan, ComparedModel a, ComparedModel b,
                                                      const EnhancementOptions& options, std::stop_token stop);
 
-/// Returns whether the paired interval excludes 1; empty if there is no interval.
+/// Returns whether the models differ: the paired interval excludes 1. Empty if there is no interval.
 [[nodiscard]] std::optional<bool> parts(const PairedRatio& ratio);
 
 }  // namespace todbench

@@ -7,8 +7,8 @@
 
 namespace todbench {
 
-/// Returns a page with the deviations, curves, transfer functions, differences of pixels and keys, and sources of the
-/// models. The page contains no times of day and no host names.
+/// Returns a page with the deviations, curves, transfer functions, differences of pixels and keys, and the sources of
+/// the models. The page contains no times of day and no host names.
 [[nodiscard]] Document model_comparison_page(const LoadedPlan& plan, const ModelComparison& comparison);
 
 }  // namespace todbench
