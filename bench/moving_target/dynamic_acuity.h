@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dynamic TOD: acuity for a moving target, compared with that for a target at rest.
+// Dynamic TOD: acuity for a moving target, compared with the acuity for a target at rest.
 #pragma once
 
 #include <array>
@@ -16,13 +16,13 @@ namespace todbench {
 /// Result of one observer at one speed.
 struct DynamicPoint {
   SequenceObserver observer = SequenceObserver::single_frame;
-  PsychometricFit fit;  ///< clusters are passes
-  /// Acuity over that of the same observer for the target at rest, paired over whole passes; 1 for the target at rest.
-  /// Empty: a threshold is missing.
+  PsychometricFit fit;  ///< the clusters of the fit are passes
+  /// Acuity divided by the acuity of the same observer for the target at rest, paired over whole passes; 1 for the
+  /// target at rest. Empty: a threshold is missing.
   std::optional<double> ratio;
   Interval ratio_ci95;
   /// S75 and ratio over the open parameters of an observer with an eye (open_parameters.h); empty without an eye, or if
-  /// the observer or a limit of its parameters gives none. Not confidence intervals.
+  /// the observer or one of these limits gives no value. Not confidence intervals.
   std::optional<std::pair<double, double>> s75_spread_mrad{}, ratio_spread{};
 };
 /// Results at one speed.
@@ -34,16 +34,16 @@ struct DynamicAcuity {
   std::vector<DynamicPoint> points;       ///< by SequenceObserver
 };
 
-/// Converts a speed to the pixels of this sensor. The points are empty.
+/// Returns the entry of a speed with its values in pixels of this sensor. The points are empty.
 [[nodiscard]] DynamicAcuity dynamic_acuity_at(const SensorSpec& sensor, double speed_mrad_s, double speed_px);
-/// Fits the answers of one observer at one speed, and computes their ratio to those at rest. Errors: those of
-/// fit_psychometric().
+/// Fits the answers of one observer at one speed, and computes the ratio of the acuity to the acuity at rest. Errors:
+/// those of fit_psychometric().
 [[nodiscard]] Result<DynamicPoint> dynamic_point(SequenceObserver observer, const std::vector<Level>& levels,
                                                  const std::vector<Trial>& trials, const std::vector<Trial>& at_rest,
                                                  const FitOptions& fit);
 
-/// Adds the spreads between both limits of the open parameters to the points of an observer. `ends`: best and worst
-/// observer, with the same speeds and kinds as `found`.
+/// Adds the spread over the open parameters to the points of an observer. `ends`: best and worst observer, with the
+/// same speeds and kinds as `found`.
 void add_spreads(const std::array<std::vector<DynamicAcuity>, 2>& ends, std::vector<DynamicAcuity>& found);
 
 /// Results at all speeds.
@@ -52,9 +52,10 @@ struct DynamicAcuities {
   std::vector<std::string> notes;  ///< reasons of missing spreads
 };
 
-/// Calls dynamic_trials() with its options; adds the speed 0 in front if it is missing. Without sizes: eleven from 0.5
-/// to 2.5 times the threshold of the target at rest, from a direct estimate. For an observer with an eye, the observers
-/// at both limits of its open parameters follow, each with its own sizes.
+/// Computes the acuities with dynamic_trials(). Adds the speed 0 in front if it is missing. If `options` state no
+/// sizes, uses eleven sizes from 0.5 to 2.5 times the threshold of the target at rest, which a direct estimate gives.
+/// For an observer with an eye, also computes the observers at both limits of its open parameters, each with its own
+/// sizes.
 [[nodiscard]] Result<DynamicAcuities> dynamic_acuity(const SensorSpec& sensor, TemplateObserver& observer,
                                                      DynamicTrialOptions options);
 

@@ -9,7 +9,7 @@ namespace todbench {
 
 /// Returns the acuities by speed and observer.
 [[nodiscard]] Json speeds_json(const std::vector<DynamicAcuity>& found);
-/// Returns a measurement: the request, acuities at every contrast, the time constant, every pass.
+/// Returns a measurement as JSON: the request, the acuities at every contrast, the time constant, and every pass.
 [[nodiscard]] Json dynamic_measurement_json(const DynamicMeasurement& found, const Plan& plan);
 
 }  // namespace todbench

@@ -15,7 +15,7 @@
 
 namespace todbench {
 
-/// Acuities at one contrast, by speed; the first is that of the plate at rest.
+/// Acuities at one contrast, by speed; the first entry is the plate at rest.
 struct DynamicContrast {
   double set_delta_t_k = 0;
   double delta_t_k = 0;  ///< observed by the camera, mean over the passes
@@ -27,7 +27,7 @@ struct MeasuredTimeConstant {
   double time_constant_ms = 0;
   Interval ci95_ms;
   double exposure_ms = 0;  ///< exposure of the sensor of the plan; half of it is subtracted from the lag
-  double offset_px = 0;    ///< error of the registration at rest, eliminated by reversed motion
+  double offset_px = 0;    ///< error of the registration at rest, which passes in both directions eliminate
   int passes = 0;
 };
 /// Fits v lag = v (tau + T / 2) + direction x offset by least squares over the moving passes with a known start of the
@@ -47,8 +47,8 @@ struct DynamicMeasurement {
 /// Callbacks of a measurement, including those of measure_moving().
 struct DynamicListener {
   MovingListener moving{};
-  std::function<Result<void>(const OpenedBench&)> on_open{};  ///< before the first measurement
-  /// Receives all passes, or those before an early end.
+  std::function<Result<void>(const OpenedBench&)> on_open{};  ///< called before the first measurement
+  /// Receives all passes; after an early end, the passes before it.
   std::function<Result<void>(const MovingMeasurement&)> on_measured{};
 };
 
