@@ -8,7 +8,8 @@
 
 namespace todbench {
 
-/// Drives the window through its views and writes one PNG per view into `folder`. Returns the exit code of the program.
+/// Shows the views of the window one after the other and writes one PNG per view into `folder`. Returns the exit code
+/// of the program.
 [[nodiscard]] int take_screenshots(MainWindow& window, const std::filesystem::path& folder);
 
 /// Writes the pages without a camera: the start page, the plan, and the report of a session. Returns the exit code of

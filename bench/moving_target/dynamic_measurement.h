@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measurement of the dynamic TOD: a camera in front of a plate that its stage moves, or the simulated sensor of a plan
-// in front of its scene.
+// Measurement of the dynamic TOD: a camera in front of a plate that a stage moves, or the simulated sensor of a plan in
+// front of a simulated scene.
 #pragma once
 
 #include <functional>
@@ -31,7 +31,7 @@ struct MeasuredTimeConstant {
   int passes = 0;
 };
 /// Fits v lag = v (tau + T / 2) + direction x offset by least squares over the moving passes with a known start of the
-/// run; interval by Student's t. Empty: fewer than four such passes, or only one direction.
+/// motion. The interval uses Student's t. Empty: fewer than four such passes, or only one direction.
 [[nodiscard]] std::optional<MeasuredTimeConstant> time_constant_of(const std::vector<MovingPassRecord>& passes,
                                                                    double exposure_ms);
 

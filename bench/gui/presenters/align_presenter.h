@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alignment of the plate in front of the camera, by repeated looks.
+// Alignment of the plate in front of the camera, with repeated measurements of its position.
 #pragma once
 
 #include <QObject>
@@ -18,13 +18,13 @@ class AlignPresenter final : public QObject {
 
  public:
   explicit AlignPresenter(Workbench& bench, QObject* parent = nullptr);
-  /// Starts looking at the plate.
+  /// Starts measuring the position of the plate.
   void start();
   void stop() { bench_.stop(); }
 
-  /// Returns the result of the last look; empty before the first.
+  /// Returns the result of the last measurement of the position; empty before the first.
   [[nodiscard]] const std::optional<Alignment>& alignment() const { return alignment_; }
-  /// Returns the number of looks since start().
+  /// Returns the number of measurements since start().
   [[nodiscard]] int looks() const { return looks_; }
   /// Returns name and value with unit of each quantity.
   [[nodiscard]] std::vector<std::pair<QString, QString>> figures() const;

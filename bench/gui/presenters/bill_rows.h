@@ -10,9 +10,11 @@
 
 namespace todbench {
 
-/// Part, time, forecast of the plan ("–": none) and result; each sentence is a remark below.
+/// Returns rows with part, time, forecast of the plan ("–": none) and result, then a row with the total and one row for
+/// each sentence.
 [[nodiscard]] QList<QStringList> bill_rows(const AccuracyBill& bill);
-/// Part, time and result of the forecast of a plan, or the reason why there is none.
+/// Returns rows with part, time and result of the forecast of a plan, or a row with the reason why there is no
+/// forecast.
 [[nodiscard]] QList<QStringList> bill_rows(const PlanForecast& forecast);
 
 }  // namespace todbench

@@ -17,15 +17,15 @@
 
 namespace todbench {
 
-/// Settings that are shown beside a live picture.
+/// Camera settings that the window shows beside a live picture.
 enum class CameraControl { frame_rate, gain, range, exposure };
 inline constexpr std::array all_camera_controls{CameraControl::frame_rate, CameraControl::gain, CameraControl::range,
                                                 CameraControl::exposure};
 /// Returns the label of the control.
 [[nodiscard]] std::string_view to_string(CameraControl control);
 
-/// Feature of a camera for a control. Its name differs between cameras: SFNC, older and vendor names of GenICam,
-/// controls of V4L2 drivers.
+/// Feature of a camera that implements a control, with its value. Names of features differ between cameras: SFNC names,
+/// older and vendor names of GenICam, controls of V4L2 drivers.
 struct ControlReading {
   CameraControl control = CameraControl::frame_rate;
   std::string feature;  ///< empty: the camera has no feature with a known name
@@ -35,17 +35,17 @@ struct ControlReading {
 /// Returns a reading for each control. A feature that cannot be read is treated as absent.
 [[nodiscard]] std::vector<ControlReading> read_controls(FrameSource& camera);
 
-/// Sets a feature and reads it back. Cameras that refuse while they stream are stopped, set and started again. Errors:
-/// those of FrameSource::set(), after which the camera streams again; `disconnected`.
+/// Sets a feature and reads it back. If a camera rejects the change while it streams, stops it, sets the feature and
+/// starts it again. Errors: those of FrameSource::set(), after which the camera streams again; `disconnected`.
 [[nodiscard]] Result<std::string> change_feature(FrameSource& camera, const std::string& feature,
                                                  const std::string& value);
 
-/// Requests from the window to the thread of the camera, and the recording of its frames. Thread-safe.
+/// Queue of requests from the window to the thread of the camera, and recorder of its frames. Thread-safe.
 class CameraDesk {
  public:
   using Request = std::function<void(FrameSource&)>;
 
-  /// Call it after a camera was opened: requests to another camera are discarded.
+  /// Discards requests to another camera. Call it after a camera was opened.
   void open();
   /// Adds a request.
   void ask(Request request);

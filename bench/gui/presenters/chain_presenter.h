@@ -24,9 +24,9 @@ struct ChainSettings {
   std::vector<Effect> skip;  ///< effects that are not simulated
   std::uint64_t seed = 1;
   std::uint64_t index = 0;           ///< number of the exposure
-  std::string scene;                 ///< name; replaces the triangle; empty: the triangle
+  std::string scene;                 ///< name of a scene that replaces the triangle; empty: the triangle
   std::string atmosphere = "clear";  ///< air between scene and camera
-  double range_m = 400;              ///< from camera to scene
+  double range_m = 400;              ///< range from camera to scene
 };
 
 /// Stage of the chain.
@@ -39,10 +39,11 @@ inline constexpr std::array all_stages{Stage::scene, Stage::optics,    Stage::de
 /// Picture after one stage.
 struct StagePicture {
   Stage stage = Stage::scene;
-  cv::Mat1d kelvin;                                   ///< above the surround
-  double pixels_per_pitch = 1;                        ///< pixels of this picture per detector pitch
-  QString note;                                       ///< effect of the stage, with numbers
-  std::optional<std::pair<double, double>> grey_k{};  ///< black and white of a scene, the same in every picture
+  cv::Mat1d kelvin;             ///< above the surround
+  double pixels_per_pitch = 1;  ///< pixels of this picture per detector pitch
+  QString note;                 ///< effect of the stage, with numbers
+  /// Levels shown black and white for a scene; the same in every picture.
+  std::optional<std::pair<double, double>> grey_k{};
 };
 
 /// Computes the pictures. Scene, optics and detector are sampled 16 times per pitch; samples, noise and quantisation

@@ -27,13 +27,13 @@ struct LevelSpan {
   [[nodiscard]] double span() const { return high - low; }
 };
 
-/// Returns the range from the 0.05 to the 99.95 % quantile (ignores a few bad pixels, keeps the triangles of a plate).
-/// It is at least `least_span` wide, so that noise alone does not fill the map.
+/// Returns the range from the 0.05 % to the 99.95 % quantile, which ignores a few bad pixels and contains the triangles
+/// of a plate. It is at least `least_span` wide, so that noise alone does not fill the map.
 [[nodiscard]] LevelSpan automatic_level(const cv::Mat1w& counts, double least_span);
 
 /// Marks over a picture.
 struct PictureMarks {
-  int saturated_from = -1;  ///< marks counts from here on, and counts of 0; < 0: no marks
+  int saturated_from = -1;  ///< marks counts of this value or more, and counts of 0; < 0: no marks
 };
 
 /// Returns the counts as a picture in the colours of `map`, with marks.
@@ -41,15 +41,15 @@ struct PictureMarks {
 /// Returns values of any unit as a picture, without marks.
 [[nodiscard]] QImage to_image(const cv::Mat1d& values, const LevelSpan& level, ColourMap map);
 
-/// Returns grey levels as they are, one pixel for each.
+/// Returns grey levels unchanged, one pixel for each level.
 [[nodiscard]] QImage grey_image(const cv::Mat1b& levels);
 
 /// Returns the number of pixels per bin between the limits of `level`; values outside are counted in the first and last
 /// bin.
 [[nodiscard]] std::vector<int> histogram(const cv::Mat1w& counts, const LevelSpan& level, int bins);
 
-/// Returns stuck pixels: those that differ by more than `limit_counts` from the median of their eight neighbours,
-/// unless a neighbour differs by a twentieth of that.
+/// Returns stuck pixels: pixels that differ by more than `limit_counts` from the median of their eight neighbours,
+/// while every neighbour differs from this median by less than a twentieth of that difference.
 [[nodiscard]] std::vector<cv::Point> dead_pixels(const cv::Mat1w& counts, double limit_counts);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plan after the choice of a camera.
+// Changes of the plan when the user chooses another device.
 #pragma once
 
 #include <string>
@@ -8,13 +8,12 @@
 
 namespace todbench {
 
-/// Returns the plan for a connected camera, without values that belong to another camera, so that none of them reaches
-/// the report of a real unit. Removed are:
-/// - values of the plans `demo`, `acceptance` and of the emulated laboratory (texts, operator, addresses, times of
-/// changes, limits, rows of the budget) and the IFOV of their camera;
-/// - IFOV, unit and settings of another camera.
-/// A simulated or emulated target becomes an operator, kind 'prompt'. Values that the user entered stay; a list of
-/// limits or rows that the user changed stays complete.
+/// Returns the plan for a connected camera without values that belong to another camera, so that none of them reaches
+/// the report of a real unit. Removes:
+/// - values of the plans `demo` and `acceptance` and of the emulated laboratory: texts, operator, addresses, times of
+/// changes, limits, rows of the budget, and the IFOV of their camera;
+/// - IFOV, unit and settings of another camera. Replaces a simulated or emulated target by an operator (kind 'prompt').
+/// Keeps values that the user entered. If the user changed a list of limits or rows, keeps the whole list.
 [[nodiscard]] Plan plan_for_camera(Plan plan, const std::string& id);
 /// Returns the plan for the emulated laboratory, with the values of the demonstration in place of those that
 /// plan_for_camera() removed.

@@ -9,7 +9,8 @@
 
 namespace todbench {
 
-/// Writes `document` into the empty `text`, whose layout paints with `drawings`; borrows both for the call.
+/// Writes `document` into `text`, which must be empty and whose layout paints figures with `drawings`. Borrows both for
+/// the call.
 void write_text(QTextDocument& text, DrawingTextObject& drawings, const Document& document);
 
 }  // namespace todbench

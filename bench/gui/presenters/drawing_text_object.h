@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drawings inside a text document.
+// Support for drawings inside a text document.
 #pragma once
 
 #include <QObject>
@@ -10,7 +10,8 @@
 
 namespace todbench {
 
-/// Text object that paints the added drawing with index property(index_property), at its own width.
+/// Text object that paints one of the added drawings at its own width. property(index_property) of the format is the
+/// index of the drawing.
 class DrawingTextObject final : public QObject, public QTextObjectInterface {
   Q_OBJECT
   Q_INTERFACES(QTextObjectInterface)
@@ -19,7 +20,8 @@ class DrawingTextObject final : public QObject, public QTextObjectInterface {
   static constexpr int object_type = QTextFormat::UserObject + 1;
   static constexpr int index_property = 1, height_property = 2;
   explicit DrawingTextObject(double page_width_px);
-  /// Adds a drawing that is at most this high. Returns the format of the character that represents it.
+  /// Adds a drawing whose height is limited to `most_height_px`. Returns the format of the character that represents
+  /// it.
   [[nodiscard]] QTextCharFormat add(const Drawing& drawing, double most_height_px);
   /// Returns the size of a drawing on a page, before the width of the page limits it.
   [[nodiscard]] static QSizeF size_of(const Drawing& drawing, double most_height_px);

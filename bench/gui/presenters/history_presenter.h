@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// History of units without widgets: the available series, and the chart of one of them.
+// History of units, without widgets: the available series, and the chart of one series.
 #pragma once
 
 #include <QObject>
@@ -17,7 +17,7 @@ namespace todbench {
 /// A chart as displayed in the window.
 struct HistoryChart {
   Plot values;  ///< values over days since the first, with 95 % intervals and the reference
-  /// Charts in standard deviations; empty if there are too few values.
+  /// Control charts in units of the standard deviation; empty if there are too few values.
   std::optional<Plot> ewma, cusum;
   QString remark;  ///< interpretation of the charts, one sentence
 };
@@ -42,7 +42,7 @@ class HistoryPresenter final : public QObject {
   void refresh();
   /// Returns the series of the index.
   [[nodiscard]] const std::vector<HistorySeries>& series() const { return series_; }
-  /// Returns the reason why there is no series; empty if there is one.
+  /// Returns the reason why there are no series; empty if there are any.
   [[nodiscard]] const QString& trouble() const { return trouble_; }
   [[nodiscard]] const std::filesystem::path& index() const { return index_; }
 

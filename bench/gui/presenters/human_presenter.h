@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Presentation of the judged patches to a person: four alternatives, arrow keys, no feedback, without display of the
-// answers of the model.
+// Presentation of the judged patches to a person: four alternatives, arrow keys, no feedback. The answers of the model
+// are not shown.
 #pragma once
 
 #include <QImage>
@@ -23,9 +23,9 @@ namespace todbench {
 struct HumanOptions {
   int per_size = 8;             ///< patches per contrast and size, or all if there are fewer
   std::optional<int> shown_ms;  ///< empty: until answered
-  int magnification = 24;       ///< screen pixels per displayed sample: more than display and eye resolve
+  int magnification = 24;       ///< screen pixels per displayed sample: finer than display and eye resolve
   std::uint64_t seed = 1;
-  int training = 0;      ///< patches with feedback before the first one that counts
+  int training = 0;      ///< patches with feedback before the first patch that counts
   PersonFacts person{};  ///< stored with the answers
 };
 
@@ -33,17 +33,17 @@ struct HumanOptions {
 [[nodiscard]] std::vector<JudgedTrial> patches_for_a_person(const std::vector<JudgedTrial>& trials,
                                                             const HumanOptions& options);
 /// Returns `options.training` patches for the training: the largest triangles at the highest contrasts, in random
-/// order, so that the task becomes clear before it becomes hard.
+/// order, so that the person understands the task on easy patches.
 [[nodiscard]] std::vector<JudgedTrial> patches_for_training(const std::vector<JudgedTrial>& trials,
                                                             const HumanOptions& options);
-/// Returns the temperatures of black and white.
+/// Returns the temperatures that are shown black and white.
 [[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged);
-/// Returns the temperatures for a display of the plan, whose levels are those of operator_picture().
+/// Returns these temperatures for a display of the plan; they are the levels of operator_picture().
 [[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged, const ViewedDisplay& display);
 /// Returns the patch as an operator sees it at the display, in pixels of the screen.
 [[nodiscard]] QImage picture_at_display(const JudgedTrial& judged, const ViewedDisplay& display);
-/// Returns the patch enlarged by bicubic interpolation. The grey scale spans three contrasts or more around the
-/// surround. It is the same for all answers, so that it does not reveal the direction of the triangle.
+/// Returns the patch enlarged by bicubic interpolation. The grey scale spans at least three contrasts around the
+/// surround. It does not depend on the direction of the triangle, so that it does not reveal the answer.
 [[nodiscard]] QImage picture_for_a_person(const JudgedTrial& judged, int magnification);
 
 /// Presenter of the patches. Used in the window's thread.
@@ -70,9 +70,9 @@ class HumanPresenter final : public QObject {
   [[nodiscard]] const QImage& picture() const { return screen_.picture(); }
   /// Returns whether the sources of begin_blind() are being computed.
   [[nodiscard]] bool preparing() const { return preparing_; }
-  /// Returns the level around the picture, 0 to 255: that of the background.
+  /// Returns the grey level around the picture, which is the level of the background, 0 to 255.
   [[nodiscard]] int background_level() const;
-  /// Returns whether picture() is in pixels of the screen, for the display of the plan.
+  /// Returns whether picture() is in pixels of the screen, because the plan has a display.
   [[nodiscard]] bool at_display() const { return !blind_ && has_display(plan_); }
   /// Returns the number of answers that count.
   [[nodiscard]] std::size_t done() const { return answers_.size(); }

@@ -30,11 +30,11 @@ struct LiveFrame {
 /// Feed that the acquiring thread writes and the window reads. Thread-safe.
 class LiveFeed {
  public:
-  /// Starts a camera and resets the counters to zero.
+  /// Registers a newly opened camera and resets the counters to zero.
   void open(const SourceInfo& info);
   /// Adds a frame.
   void put(const Frame& frame);
-  /// Returns the latest frame if it was not returned yet; otherwise empty.
+  /// Returns the latest frame once; empty if it was already returned.
   [[nodiscard]] std::optional<LiveFrame> take();
   /// Returns the description of the last opened camera.
   [[nodiscard]] std::optional<SourceInfo> info() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Live picture: choice of the camera, colours of its counts, value under the cursor.
+// Live picture: choice of the camera, colours for its counts, value under the cursor.
 #pragma once
 
 #include <QImage>
@@ -37,7 +37,7 @@ class LookPresenter final : public QObject {
   explicit LookPresenter(Workbench& bench, QObject* parent = nullptr);
 
   /// Runs the selected camera. At the same time, a target that the plan can drive is set to the highest contrast of the
-  /// plan. The picture does not wait for the target, and a failure of the target is reported as a message.
+  /// plan. The picture does not wait for the target. If the target fails, the user gets a message.
   void start();
   void stop() { bench_.stop(); }
 
@@ -72,7 +72,7 @@ class LookPresenter final : public QObject {
   /// Sets a feature of the running camera. The new value is also written to [camera] settings of the plan, so that a
   /// measurement uses it. controls_changed() follows; if the camera rejects the value, the workbench emits trouble().
   void change(const std::string& feature, const std::string& value);
-  /// Commands a non-uniformity correction.
+  /// Requests a non-uniformity correction from the camera.
   void correct();
   /// Writes the latest frame as a TIFF of 16 bits into the folder of the sessions, and returns the file. Errors: `io`;
   /// `invalid_input` without a frame.

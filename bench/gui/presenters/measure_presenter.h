@@ -38,8 +38,8 @@ class MeasurePresenter final : public QObject {
   void start();
   /// Replays the recorded frames of a session with the plan `plan` into a new session folder.
   void replay(const std::filesystem::path& session, const Plan& plan);
-  /// Continues a run that ended early, in a new session folder (resume_session()). The plan of the session becomes that
-  /// of the bench.
+  /// Continues a run that ended early, in a new session folder (resume_session()). The plan of the session becomes the
+  /// plan of the bench.
   void resume_run(const std::filesystem::path& session, const Plan& plan);
   /// Repeats the last start(), replay() or resume_run().
   void again();
@@ -53,7 +53,7 @@ class MeasurePresenter final : public QObject {
   void operator_done() { desk_->answer(OperatorAnswer::done); }
 
   [[nodiscard]] RunState state() const { return state_; }
-  /// Returns the present phase in words.
+  /// Returns the current phase in words.
   [[nodiscard]] QString phase() const { return phase_; }
   /// Returns the number of presentations so far in this phase.
   [[nodiscard]] std::size_t done() const { return done_; }
@@ -72,15 +72,15 @@ class MeasurePresenter final : public QObject {
   [[nodiscard]] const QString& waiting() const { return waiting_; }
   /// Returns the next step of the operator in a few words: the open request, or that no action is needed.
   [[nodiscard]] QString next_step() const;
-  /// Returns event and remaining time while the run waits for a lost camera; otherwise empty.
+  /// Returns the event and the remaining time while the run waits for a lost camera; otherwise empty.
   [[nodiscard]] QString camera_away() const;
   /// Returns the notes of the run, one sentence each.
   [[nodiscard]] const QStringList& notes() const { return notes_; }
   /// Returns the session folder of the run.
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
 
-  /// Returns the session to which the answers of a person to trials() belong: that of the run, or the replayed session
-  /// if all its answers were reproduced.
+  /// Returns the session to which the answers of a person to trials() belong: the session of the run, or the replayed
+  /// session if all its answers were reproduced.
   [[nodiscard]] const std::filesystem::path& judged_session() const {
     return replayed_ && same_.value_or(false) ? *replayed_ : folder_;
   }
@@ -90,7 +90,8 @@ class MeasurePresenter final : public QObject {
     return replayed_ && outcome_ ? std::optional(plan_) : std::nullopt;
   }
 
-  /// Return the curves of the camera and of its twin: fitted during the run; afterwards the results of the session.
+  /// Return the curves of the camera and of its twin: during the run the fits so far, afterwards the results of the
+  /// session.
   [[nodiscard]] const std::optional<TodCurve>& measured() const { return measured_; }
   [[nodiscard]] const std::optional<TodCurve>& twin() const { return twin_; }
   /// Sets the curve predicted by the simulated sensor, which is shown until trials of the twin arrive.

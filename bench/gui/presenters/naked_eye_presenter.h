@@ -39,8 +39,8 @@ class NakedEyePresenter final : public QObject {
  public:
   explicit NakedEyePresenter(QObject* parent = nullptr);
 
-  /// Computes the prediction for hvs-2 at the display of the plan, writes the prediction to a new folder in `sessions`,
-  /// then shows the first triangle. Returns an error sentence; empty: the experiment has begun.
+  /// Computes the prediction for hvs-2 at the display of the plan, writes it to a new folder in `sessions`, and then
+  /// shows the first triangle. Returns an error sentence; empty: the experiment has begun.
   [[nodiscard]] QString begin(const Plan& plan, const NakedEyeQuestion& question, const std::filesystem::path& sessions,
                               std::optional<int> shown_ms);
   /// Records the answer of the person to the picture shown now or last.

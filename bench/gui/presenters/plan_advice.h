@@ -21,8 +21,8 @@ inline constexpr const char* no_display_sentence =
 /// `invalid_input` without a display or with modules, those of the loaders and of propose_viewing().
 [[nodiscard]] Result<QString> viewing_advice(const Plan& plan, const std::stop_token& stop);
 
-/// Returns a table of the costs of acuity_limits() at each contrast of the plan, as HTML. The observer is that of the
-/// plan; if the plan has a display and its observer has no eye, it is hvs-2. Errors: those of the loaders and of
+/// Returns a table of the costs of acuity_limits() at each contrast of the plan, as HTML. Uses the observer of the
+/// plan, or hvs-2 if the plan has a display and its observer has no eye. Errors: those of the loaders and of
 /// acuity_limits().
 [[nodiscard]] Result<QString> limits_advice(const Plan& plan, const std::stop_token& stop);
 
@@ -32,7 +32,7 @@ class PlanAdvice final : public QObject {
 
  public:
   using Estimate = std::function<Result<QString>(const Plan&, const std::stop_token&)>;
-  /// `running` is shown while the estimate runs.
+  /// `running`: text of words() while the estimate runs.
   PlanAdvice(Estimate estimate, QString running, QObject* parent = nullptr);
 
   /// Starts the estimate for this plan; a later call replaces an earlier one.
@@ -41,7 +41,8 @@ class PlanAdvice final : public QObject {
   void stop();
   /// Returns whether the estimate runs.
   [[nodiscard]] bool busy() const { return busy_; }
-  /// Returns the result, the sentence of its error, or that it runs or was stopped; empty before the first estimate.
+  /// Returns the result, an error sentence, or a sentence that the estimate runs or was stopped. Empty before the first
+  /// estimate.
   [[nodiscard]] const QString& words() const { return words_; }
 
  signals:

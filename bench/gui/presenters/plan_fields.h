@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lines of the form of a plan as values, from the table of plan keys: kind of input, reading from a plan, change of a
-// plan.
+// Lines of the form of a plan as values, generated from the table of plan keys: the kind of input, and functions that
+// read a value from a plan and set it.
 #pragma once
 
 #include <QString>
@@ -38,7 +38,7 @@ inline constexpr std::size_t most_columns_beside = 3;
 struct FieldColumn {
   QString title;      ///< with the unit
   QStringList words;  ///< suggested names; empty: none. Other texts are accepted too
-  QString longest{};  ///< text that has to be fully visible; empty: the title
+  QString longest{};  ///< text that must be fully visible; empty: the title
 };
 
 /// A line of the form. It accepts every readable value in range. Conflicts with other values are found by the
@@ -49,10 +49,11 @@ struct PlanField {
   QString object_name;  ///< object name of the widget
   FieldKind kind = FieldKind::text;
   QStringList words{};
-  QString when_empty{};  ///< meaning of an empty text, if it may be empty
+  QString when_empty{};  ///< meaning of an empty text; empty: the text may not be empty
   std::vector<FieldColumn> columns{};
   int low = 0, high = 0;
-  std::vector<std::string> paths{};  ///< paths of its keys: an Error::key equal to one of them belongs to this line
+  /// Paths of the keys of this line. An error with one of them in Error::key belongs to this line.
+  std::vector<std::string> paths{};
   /// Returns the text of the line for a plan.
   std::function<QString(const Plan&)> shown{};
   /// Sets a text in the plan. On an error returns a sentence and leaves the plan as it is.

@@ -14,13 +14,13 @@
 
 namespace todbench {
 
-/// Choice of the user whether an effect is simulated, or the planner decides.
+/// Choice of the user for an effect: simulate it, skip it, or let the planner decide.
 enum class EffectChoice { planner, simulate, skip };
 inline constexpr std::array all_effect_choices{EffectChoice::planner, EffectChoice::simulate, EffectChoice::skip};
 
 /// Presenter of the plan of the workbench. It validates every change as for a plan file. Counts and bench time are
 /// updated during the call. The decisions of the planner, the uncertainties and the time of the simulation come from
-/// predict_plan(), which runs in the background; while a slider moves, one prediction follows another. Used in the
+/// predict_plan(), which runs in the background. While a slider moves, predictions run one after the other. Used in the
 /// window's thread.
 class PlanPresenter final : public QObject {
   Q_OBJECT
@@ -47,10 +47,10 @@ class PlanPresenter final : public QObject {
   [[nodiscard]] QString set_tolerance_percent(double tolerance_percent);
   /// Adds an effect to [simulation] force or skip, or removes it from both. Returns an error sentence; empty: success.
   [[nodiscard]] QString choose(Effect effect, EffectChoice choice);
-  /// Returns the choice for an effect in the present plan.
+  /// Returns the choice for an effect in the current plan.
   [[nodiscard]] EffectChoice choice(Effect effect) const;
 
-  /// Returns whether there is a change to undo: a change of the plan from any source since the device was chosen. One
+  /// Returns whether there is a change to undo. Changes from any source since the choice of the device count; a
   /// movement of a slider is one change.
   [[nodiscard]] bool can_undo() const { return !undone_to_.empty(); }
   /// Returns whether there is an undone change to repeat.
@@ -60,18 +60,18 @@ class PlanPresenter final : public QObject {
   /// Repeats the change that was undone last.
   void redo();
 
-  /// Returns counts, bench time and uncertainties of the present plan, updated with every change.
+  /// Returns counts, bench time and uncertainties of the current plan, updated with every change.
   [[nodiscard]] const PlanPreview& outlook() const { return outlook_; }
   /// Returns whether the thresholds of the direct estimate are known.
   [[nodiscard]] bool expected_known() const { return !expected_.empty(); }
   /// Returns the thresholds of the direct estimate; empty until they are known.
   [[nodiscard]] const std::vector<ExpectedThreshold>& expected() const { return expected_; }
   /// Returns the prediction for this plan, or for the last plan until the new prediction is complete; empty before the
-  /// first, and after a change of anything but tolerance and phases.
+  /// first prediction, and after a change of any other value than tolerance and phases.
   [[nodiscard]] const std::optional<PlanForecast>& forecast() const { return forecast_; }
-  /// Returns whether the prediction belongs to the present plan.
+  /// Returns whether the prediction belongs to the current plan.
   [[nodiscard]] bool forecast_current() const { return forecast_ && forecast_->plan == bench_.plan(); }
-  /// Returns the cost of each accuracy, from the finest; empty until known.
+  /// Returns the cost of each accuracy, starting with the finest; empty until computed.
   [[nodiscard]] const std::vector<AccuracyPrice>& prices() const { return prices_; }
   /// Returns a conflict in a plan whose file is valid: sizes that cannot be measured at this distance, or a tolerance
   /// that cannot be met. Empty: none.

@@ -33,17 +33,17 @@ struct ExpectedThreshold {
 
 /// Results of predict_plan() and predict_times(), which take some tenths of a second.
 struct PlanForecast {
-  Plan plan;                               ///< the predicted plan
-  std::vector<int> frames;                 ///< per presentation, if the plan leaves them open: with_frames()
-  SensorPlan effects;                      ///< the planner's decisions and reasons
-  std::vector<std::string> warnings;       ///< one sentence each
-  std::vector<ContrastPrediction> twin;    ///< with the phases of the simulation; empty: see `problem`
+  Plan plan;                             ///< the predicted plan
+  std::vector<int> frames;               ///< frames per presentation by with_frames(), if the plan does not state them
+  SensorPlan effects;                    ///< decisions of the planner with their reasons
+  std::vector<std::string> warnings;     ///< one sentence each
+  std::vector<ContrastPrediction> twin;  ///< prediction with the phases of the simulation; empty: see `problem`
   std::vector<ContrastPrediction> camera;  ///< prediction with the phases of the target
   /// Largest half-width of the camera with 1, 2, 4 and 8 frames per presentation; empty for binary answers.
   std::vector<std::pair<int, double>> by_frames;
-  std::optional<double> twin_s;        ///< to simulate, on one core
+  std::optional<double> twin_s;        ///< time of the simulation on one core
   std::optional<AccuracyBill> bill{};  ///< bill_forecast(); empty: no camera, a simulated scene, or `problem`
-  std::string problem;                 ///< why the tolerance cannot be met; empty: it can
+  std::string problem;                 ///< reason why the tolerance cannot be met; empty: it can be met
 };
 
 /// Computes the predictions. `known`: thresholds that replace those of the planner; may be empty. `planner` caches
@@ -69,15 +69,16 @@ struct PlanPreview {
   [[nodiscard]] std::optional<double> uncertainty_percent() const;
 };
 
-/// Computes the outlook, fast enough to follow a slider. If the number of phases differs from that of the forecast,
-/// ln(1 + uncertainty) is scaled with the root of their ratio and the time of the simulation with the ratio. If `seen`
-/// is null, only counts and bench time are computed.
+/// Computes the outlook, fast enough to follow a slider. If the plan has other numbers of phases than the forecast,
+/// ln(1 + uncertainty) is scaled with the square root of forecast phases / plan phases (not for an adaptive schedule),
+/// and the time of the simulation with plan phases / forecast phases. If `seen` is null, only counts and bench time are
+/// computed.
 [[nodiscard]] PlanPreview outlook(const Plan& plan, const std::vector<TargetPlate>& plates, const PlanForecast* seen,
                                   double frame_rate_hz);
 
-/// Returns the plan with another tolerance: the fewest phases, 2 to 256, for camera and twin that reach it at every
-/// contrast with a threshold; for an adaptive schedule its requested half-width. If `seen` is null, the phases do not
-/// change.
+/// Returns the plan with another tolerance. Sets the phases of camera and twin to the smallest number (2 to 256) with
+/// which the camera reaches the tolerance at every contrast with a threshold, or to 256 if no number suffices. For an
+/// adaptive schedule, sets the requested half-width instead. If `seen` is null, the phases do not change.
 [[nodiscard]] Plan with_tolerance(Plan plan, const PlanForecast* seen, double tolerance_percent);
 
 /// One point of the frontier: the cost of an accuracy.
@@ -88,16 +89,16 @@ struct AccuracyPrice {
   std::optional<double> twin_s;  ///< empty: the simulation cannot reach it
 };
 
-/// Runs predict_plan() and predict_times() for tolerances from 0.5 to 20 %, without those that 256 phases do not reach.
-/// Returns the points so far if stop is requested. Does not depend on tolerance and phases of the plan. `known`: as for
-/// forecast().
+/// Runs predict_plan() and predict_times() for tolerances from 0.5 to 20 %. Omits tolerances that 256 phases do not
+/// reach. Returns the points so far if stop is requested. The result does not depend on the tolerance and the phases of
+/// the plan. `known`: as for forecast().
 [[nodiscard]] std::vector<AccuracyPrice> accuracy_prices(const LoadedPlan& loaded, const PlanForecast& seen,
                                                          const std::vector<ExpectedThreshold>& known,
                                                          double frame_rate_hz, EffectPlanner& planner,
                                                          const std::stop_token& stop);
 
-/// Returns the plot of uncertainty against bench time and time of the simulation, also for the same presentations with
-/// 1, 2, 4 and 8 frames; the square marks the plan itself.
+/// Returns the plot of uncertainty against bench time and time of the simulation, with points for the same
+/// presentations with 1, 2, 4 and 8 frames. A square marks the plan itself.
 [[nodiscard]] Plot accuracy_plot(const std::vector<AccuracyPrice>& prices, const PlanPreview& now);
 
 }  // namespace todbench

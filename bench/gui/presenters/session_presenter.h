@@ -18,7 +18,8 @@ namespace todbench {
 struct SessionEntry {
   std::filesystem::path folder;
   QString name, when, state;
-  QString unit;     ///< as in the plan, otherwise the camera's model; "simulation" without a camera
+  /// Unit as the plan states it, otherwise the model of the camera; "simulation" without a camera.
+  QString unit;
   QString serial;   ///< serial number of the camera; empty: no camera
   QString verdict;  ///< "pass", "fail", "inconclusive"; empty: no verdict that the manifest confirms
 };
@@ -35,7 +36,7 @@ struct OpenedSession {
   ReportData report;
   std::optional<HumanRecord> human;
   bool recorded = false;               ///< contains its frames and can be replayed
-  std::optional<AccuracyBill> bill{};  ///< as in the report
+  std::optional<AccuracyBill> bill{};  ///< bill as in the report
 };
 
 /// Two compared sessions.
@@ -68,9 +69,9 @@ class SessionPresenter final : public QObject {
   [[nodiscard]] const std::optional<ComparedSessions>& compared_sessions() const { return compared_; }
   /// Writes report.html and report.pdf into the open session; exported() or problem() follows.
   void export_reports();
-  /// Writes the reports with an order, a file with a section [order], which the session stores.
+  /// Writes the reports with an order and stores the order in the session. `order`: file with a section [order].
   void export_with_order(const std::filesystem::path& order);
-  /// Sets the plan of the open session as the plan of the bench, for another run.
+  /// Makes the plan of the open session the plan of the bench, for another run.
   void use_plan_again();
 
   /// Returns the figure of the open session, or of the comparison if there is one.

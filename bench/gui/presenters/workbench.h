@@ -18,7 +18,7 @@
 
 namespace todbench {
 
-/// State of a device on its badge.
+/// State of a device, as shown on its badge.
 enum class DeviceHealth { ready, in_use, lost };
 /// Returns the state in words.
 [[nodiscard]] QString name_of(DeviceHealth health);
@@ -34,7 +34,7 @@ struct DeviceEntry {
 };
 inline constexpr const char* emulated_laboratory = "emulated";
 
-/// Present activity of the bench. One at a time.
+/// Current activity of the bench. There is one at a time.
 enum class Activity { idle, looking, aligning, measuring, replaying };
 /// Returns the activity in words.
 [[nodiscard]] QString name_of(Activity activity);
@@ -72,11 +72,11 @@ class Workbench final : public QObject {
   void rescan();
 
   [[nodiscard]] Activity activity() const { return activity_; }
-  /// Stops the running job and runs another with the devices. `job` is called on the device thread with the plan, whose
-  /// devices are ready; the error that it returns becomes a trouble(), except `interrupted`.
+  /// Stops the running job and runs another with the devices. `job` is called on the device thread with the plan, when
+  /// its devices are ready. If it returns an error other than `interrupted`, trouble() is emitted.
   using DeviceJob = std::function<Result<void>(const Plan&, std::stop_token)>;
   void run(Activity activity, DeviceJob job);
-  /// Runs a job without devices in the same way; it is called with the plan as it is.
+  /// Runs a job without devices in the same way, with the unchanged plan.
   void run_without_devices(Activity activity, DeviceJob job);
   /// Stops the running job.
   void stop();
@@ -84,10 +84,10 @@ class Workbench final : public QObject {
   void shut_down();
   [[nodiscard]] LiveFeed& feed() { return feed_; }
 
-  /// Cuts the power of the emulated camera, like a pulled cable, for demonstrations and tests. Any thread.
+  /// Switches the emulated camera off, as if its cable was pulled, for demonstrations and tests. Any thread.
   void switch_emulated_camera_off();
 
-  /// Sets the state of the device that a job observed. Window's thread.
+  /// Sets the state of the device as a job observed it. Window's thread.
   void report_health(DeviceHealth health) { set_health(health); }
 
   /// Calls `what` in the window's thread, if the workbench still exists. Any thread.

@@ -42,7 +42,7 @@ class HumanView final : public QWidget {
   [[nodiscard]] QWidget* side_panel();
   void add_questions(QFormLayout& form);
   [[nodiscard]] bool triangles() const;
-  /// Whether the question is about frames of a sensor with triangles.
+  /// Returns whether the question is about frames of a sensor with triangles.
   [[nodiscard]] bool of_frames() const;
   [[nodiscard]] BarCriterion criterion() const;
   void begin();

@@ -21,12 +21,13 @@ namespace todbench {
 [[nodiscard]] QTableWidget* plain_table(const QStringList& header, const QString& object_name);
 /// Wraps texts that are too long for their cell. Use it for tables of few rows.
 void wrap_words(QTableWidget& table);
-/// Sets column widths for their headings and these texts, one per column from the first; the last column fills the
-/// remaining width. Returns the table width that fits these columns exactly.
+/// Sets column widths so that the headings and the texts `longest` fit, one text per column from the first. The last
+/// column fills the remaining width. Returns the table width that fits these columns exactly.
 int column_widths(QTableWidget& table, const QStringList& longest);
-/// Fits the height to the rows, between one and `most_rows`.
+/// Sets the height to that of the rows, at least one and at most `most_rows` rows.
 void fit_height(QTableWidget& table, int most_rows);
-/// Fits the height to the rows with wrapped words, now and after every change, between these heights in pixels.
+/// Sets the height to that of the rows with wrapped words, now and after every change, between `least` and `most`
+/// pixels.
 void fit_rows(QTableWidget& table, int least, int most);
 /// Replaces the rows of a table.
 void fill_table(QTableWidget& table, const QList<QStringList>& rows);

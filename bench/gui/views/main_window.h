@@ -56,8 +56,9 @@ class MainWindow final : public QMainWindow {
   [[nodiscard]] View view() const;
   /// Sets light or dark theme.
   void set_theme(Theme theme);
-  /// Asks the user before a run or the answers of a person are lost: `question`, and the text of the button that
-  /// confirms the action. Returns whether the user confirmed. Tests replace the message box with it.
+  /// Function that asks the user before a run or the answers of a person are lost, and returns whether the user
+  /// confirmed. `question`: text of the message; `action`: text of the button that confirms. Tests use it to replace
+  /// the message box.
   using Confirm = std::function<bool(const QString& question, const QString& action)>;
   void set_confirm(Confirm confirm) { confirm_ = std::move(confirm); }
   /// Opens a session (its folder or session.toml) or a plan (another TOML file); shows an error if the file cannot be
@@ -93,7 +94,7 @@ class MainWindow final : public QMainWindow {
   void abort_run();
   void show_help(const QString& page);
   void show_trouble(const QString& sentence, Remedy remedy);
-  /// Shows a message with the remaining time and the possible actions while a lost camera is awaited.
+  /// Shows a message with the remaining time and the possible actions while the run waits for a lost camera.
   void show_camera_away();
   void show_state();
   void recall();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Check for faults of a page: an error, a plot or picture without content, truncated text.
+// Check of a page for faults: an error, a plot or picture without content, truncated text.
 #pragma once
 
 #include <QString>

@@ -69,7 +69,7 @@ class PictureView final : public QWidget {
   std::vector<QPoint> rings_;
   QString placeholder_;
   std::optional<QColor> surround_;
-  QRectF region_;  ///< until the user zooms or moves
+  QRectF region_;  ///< shown part of the picture, until the user zooms or moves
   double zoom_ = 0;
   QPointF shift_;  ///< shift of the centre, in screen pixels
   QPointF dragged_from_;

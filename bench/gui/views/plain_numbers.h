@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Number format of the window, which is that of plans, files and reports.
+// Number format of the window, which is the format of plans, files and reports.
 #pragma once
 
 #include <QDoubleSpinBox>

@@ -43,7 +43,7 @@ class ReportView final : public QWidget {
   [[nodiscard]] QWidget* session_panel();
   [[nodiscard]] QWidget* results();
   [[nodiscard]] QWidget* letterhead_line();
-  /// The session of the selected row; empty: no selection.
+  /// Returns the session of the selected row; empty: no selection.
   [[nodiscard]] std::optional<std::filesystem::path> chosen() const;
   void list_sessions();
   void show_session();
