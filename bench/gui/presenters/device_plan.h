@@ -11,9 +11,11 @@ namespace todbench {
 /// Returns the plan for a connected camera without values that belong to another camera, so that none of them reaches
 /// the report of a real unit. Removes:
 /// - values of the plans `demo` and `acceptance` and of the emulated laboratory: texts, operator, addresses, times of
-/// changes, limits, rows of the budget, and the IFOV of their camera;
-/// - IFOV, unit and settings of another camera. Replaces a simulated or emulated target by an operator (kind 'prompt').
-/// Keeps values that the user entered. If the user changed a list of limits or rows, keeps the whole list.
+///   changes, limits, rows of the budget, and the IFOV of their camera;
+/// - IFOV, unit and settings of another camera.
+///
+/// Replaces a simulated or emulated target by an operator (kind 'prompt'). Keeps values that the user entered. If the
+/// user changed a list of limits or rows, keeps the whole list.
 [[nodiscard]] Plan plan_for_camera(Plan plan, const std::string& id);
 /// Returns the plan for the emulated laboratory, with the values of the demonstration in place of those that
 /// plan_for_camera() removed.
