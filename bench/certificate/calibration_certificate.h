@@ -18,8 +18,8 @@ inline constexpr std::string_view certificate_schema_version = "3.2.1";
 /// Returns the certificate as XML. It contains administrative data, method, conditions, instruments, the decision with
 /// its rule, and for each contrast the threshold S75 and the acuity with expanded uncertainty and coverage factor. The
 /// session must be measured and complete, with a budget and a threshold at every contrast. The order must state
-/// customer, report number, laboratory, country, issue date and authorising person. Errors: `invalid_input` with the
-/// missing entries.
+/// customer, report number, laboratory, country, issue date and authorising person. Errors: `invalid_input` that lists
+/// the missing entries.
 [[nodiscard]] Result<std::string> calibration_certificate(const Session& session, const OrderPlan& order);
 
 }  // namespace todbench
