@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks for common problems of a bench before a run. Each check states its finding, its importance, and a command that
-// fixes it. System files are read under a selectable root; other facts are arguments, so every check is a function of
-// values.
+// Checks for common problems of a bench before a run. Each check states its finding, why it matters, and a command that
+// fixes the problem. Checks read system files under a selectable root and get other facts as arguments, so that tests
+// can supply both.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct DoctorCheck {
   Finding finding = Finding::unknown;
   std::string found{};        ///< current state, with units
   std::string explanation{};  ///< reason why it matters
-  std::string command{};      ///< command that fixes it; empty: not necessary or none exists
+  std::string command{};      ///< command that fixes the problem; empty: not necessary, or no such command
 };
 
 /// Requirements of the planned measurement.
@@ -38,16 +38,16 @@ struct DoctorDemand {
   std::int64_t frame_bytes = 640 * 480 * 2;
   double frame_rate_hz = 50;
   int packet_bytes = 1500;        ///< GigE Vision packet, including IP and UDP headers
-  double recording_minutes = 30;  ///< duration of recorded frames
+  double recording_minutes = 30;  ///< duration of the recording of frames
 };
 
 /// Facts that are not in a file.
 struct SystemFacts {
   unsigned user_id = 0;
   std::set<unsigned> group_ids{};
-  std::optional<std::string> firewall_rules;    ///< output of `nft list ruleset` and `iptables-save`
-  std::optional<bool> clock_synchronised;       ///< according to the kernel
-  std::optional<double> clock_step_s;           ///< drift between wall clock and monotonic clock during the check
+  std::optional<std::string> firewall_rules;  ///< output of `nft list ruleset` and `iptables-save`
+  std::optional<bool> clock_synchronised;     ///< according to the kernel
+  std::optional<double> clock_step_s;         ///< change of the wall clock against the monotonic clock during the check
   std::optional<std::int64_t> disk_free_bytes;  ///< on the disk of the sessions
   std::optional<double> disk_bytes_per_s;       ///< write speed including flush
 };
@@ -62,11 +62,12 @@ struct SystemFacts {
 [[nodiscard]] DoctorCheck check_mtu(const std::filesystem::path& root, const DoctorDemand& demand);
 /// Checks for firewall rules that drop UDP.
 [[nodiscard]] DoctorCheck check_firewall(const std::filesystem::path& root, const SystemFacts& facts);
-/// Checks whether the interface of a camera is unambiguous and suitable: several, wireless, slow.
+/// Checks the active network interfaces: warns of several interfaces (a camera may answer on the wrong one), and of
+/// wireless or slow ones.
 [[nodiscard]] DoctorCheck check_interfaces(const std::filesystem::path& root);
 /// Checks usbfs_memory_mb against 8 frames in flight.
 [[nodiscard]] DoctorCheck check_usb_memory(const std::filesystem::path& root, const DoctorDemand& demand);
-/// Checks read and write permission for the device nodes of connected cameras, and the udev rules that grant it.
+/// Checks the permission to read and write the device nodes of connected cameras, and the udev rules that grant it.
 [[nodiscard]] DoctorCheck check_permissions(const std::filesystem::path& root, const SystemFacts& facts);
 /// Checks disk space and speed for recorded frames.
 [[nodiscard]] DoctorCheck check_disk(const SystemFacts& facts, const DoctorDemand& demand);

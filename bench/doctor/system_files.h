@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small files of /proc, /sys and /etc under a selectable root.
+// Reading of small files of /proc, /sys and /etc under a selectable root.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ namespace todbench {
 /// Returns the entries of a folder sorted by name; empty if the folder does not exist.
 [[nodiscard]] std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder);
 
-/// Active network interface other than the loopback.
+/// Active network interface, other than the loopback interface.
 struct NetworkInterface {
   std::string name;
   std::int64_t mtu = 0;
