@@ -9,18 +9,19 @@
 
 namespace todbench {
 
-/// One check of a unit. For ratios (acuity) use the logarithm.
+/// Value of one check of a unit. For ratio scales (acuity) use the logarithm.
 struct ChartValue {
   double days = 0;  ///< since any fixed origin
   double value = 0;
   double u = 0;  ///< standard uncertainty, without the part common to all checks
 };
 
-/// EWMA (Roberts 1959) with time-varying limits (Lucas and Saccucci 1990); CUSUM (Page 1954).
+/// Parameters of the charts: EWMA (Roberts 1959) with time-varying limits (Lucas and Saccucci 1990), and CUSUM (Page
+/// 1954).
 struct ChartDesign {
-  /// EWMA: ARL 238 in control, 8.8 at a shift of one standard deviation.
+  /// EWMA: average run length (ARL) 238 in control, 8.8 at a shift of one standard deviation.
   double lambda = 0.2, ewma_limit = 2.7;
-  double cusum_k = 0.5, cusum_h = 5;  ///< ARL 465 in control, 10.4 at that shift
+  double cusum_k = 0.5, cusum_h = 5;  ///< CUSUM: ARL 465 in control, 10.4 at a shift of one standard deviation
   int reference_values = 3;           ///< number of first values, whose mean is the reference
   std::optional<double> reference{};  ///< known reference; replaces their mean
   std::optional<double> scatter{};    ///< known scatter; replaces the estimate
@@ -44,23 +45,23 @@ struct ControlChart {
   [[nodiscard]] bool signalled() const { return !points.empty() && points.back().signal; }
 };
 
-/// Returns the chart of values in the order of time. Reference: weighted mean of the first values; its error widens the
-/// limits of the EWMA; without an error the limits are the usual ones. Scatter: half the mean square of successive
-/// differences minus the mean u^2 (von Neumann 1941), at least 0. Empty if there is no value after the reference, or if
-/// a value has neither uncertainty nor scatter.
+/// Returns the chart of values in the order of time. The reference is the weighted mean of the first values. Its
+/// standard error widens the limits of the EWMA; without an error they are the usual limits. The scatter is the square
+/// root of half the mean square of successive differences minus the mean u^2 (von Neumann 1941), at least 0. Empty if
+/// there is no value after the reference, or if a value has neither uncertainty nor scatter.
 [[nodiscard]] std::optional<ControlChart> control_chart(const std::vector<ChartValue>& values,
                                                         const ChartDesign& design);
 
-/// Return the average number of checks until a signal of a chart with constant limits, from its neutral state, for a
-/// shift in standard deviations; error 1e-8. Solves the integral equation (EWMA: Crowder 1987; CUSUM: Page 1954) by
-/// Gaussian quadrature.
+/// Return the average run length: the mean number of checks until a chart with constant limits signals, starting from
+/// its neutral state, for a shift in standard deviations. Solve the integral equation (EWMA: Crowder 1987; CUSUM: Page
+/// 1954) by Gaussian quadrature with an error of 1e-8.
 [[nodiscard]] double ewma_run_length(double lambda, double limit, double shift);
 [[nodiscard]] double cusum_run_length(double k, double h, double shift);
 
 /// Kind of a predicted crossing.
 enum class CrossingKind {
   found,       ///< between `earliest_days` and `latest_days`
-  not_before,  ///< the interval has no late limit, because the slope is not significant
+  not_before,  ///< only `earliest_days` exists, because the slope is not significant
   never,       ///< the data exclude a future crossing
 };
 /// Returns the name of the enumerator.
@@ -74,9 +75,9 @@ struct LimitCrossing {
 };
 
 /// Fits the weighted line x = a + b t with weights 1 / (u^2 + scatter^2). The 95 % interval of the crossing (Fieller
-/// 1954) contains all t with (a + b t - limit)^2 <= z^2 (1 / W + (t - tm)^2 var b). Only times after the last value are
-/// used; a last value that is already beyond the limit is not reported. Empty for fewer than three values or a single
-/// time.
+/// 1954) contains all t with (a + b t - limit)^2 <= z^2 (1 / W + (t - tm)^2 var b). Only times after the last value
+/// count. The function does not report that the last value is already beyond the limit. Empty for fewer than three
+/// values or a single time.
 [[nodiscard]] std::optional<LimitCrossing> crossing(const std::vector<ChartValue>& values, double scatter,
                                                     double limit);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fleet prior from units of one kind in the history.
+// Fleet prior from the units of one kind in the history.
 #pragma once
 
 #include <string>
@@ -14,10 +14,10 @@ namespace todbench {
 /// Selection of units. Empty members match all units. The selected units must share vendor and lens.
 struct FleetKind {
   std::string vendor{}, model{}, lens{};
-  std::string without_serial{};  ///< unit to be judged; its own sessions are left out
+  std::string without_serial{};  ///< serial number of the unit to be judged, whose own sessions are left out
 };
 
-/// Row of a plan, or the reason why there is none.
+/// Row of the fleet for a plan, or the reason for its rejection.
 struct FleetFound {
   FleetRow row;
   std::string unit_text;

@@ -25,30 +25,30 @@ struct HistoryEvent {
 enum class Adding {
   added,
   known,         ///< same manifest at the same place, or a copy of a session that still exists
-  moved,         ///< same manifest at another place; it no longer exists at the old place
+  moved,         ///< same manifest at another place; the session no longer exists at the old place
   judged_again,  ///< not added: its frames are those of another session
 };
 
-/// Index of sessions. Events are not in the session folders. They are therefore also stored in FILE.events.csv next to
-/// the index, from which a rebuilt index reads them. One writer at a time; one thread.
+/// Index of sessions. Session folders do not contain events. The file FILE.events.csv next to the index therefore also
+/// stores them, and a rebuilt index reads them from there. One writer at a time; one thread.
 class HistoryIndex {
  public:
   /// Opens the index, or creates it and its folder. A write-protected index is opened for reading. Errors:
   /// `invalid_input` (not an index, later version, damaged, or on a network disk, where locks are unreliable), `io`
   /// (locked by another program for longer than `wait`, or refused by the disk). Adding a session takes some
-  /// milliseconds; on a busy disk a dozen programs wait for each other.
+  /// milliseconds. On a busy disk, a dozen programs can add sessions by waiting for each other.
   [[nodiscard]] static Result<HistoryIndex> open(const std::filesystem::path& file,
                                                  std::chrono::milliseconds wait = std::chrono::seconds(20));
   HistoryIndex(HistoryIndex&&) noexcept;
   HistoryIndex& operator=(HistoryIndex&&) noexcept;
   ~HistoryIndex();
 
-  /// Adds the session with the conditions of stated_condition(). If it resumed an interrupted session, it replaces the
-  /// values of that session, because it contains the same frames.
+  /// Adds the session with the conditions of stated_condition(). If the session resumed an interrupted session, its
+  /// values replace the values of that session, because it contains the same frames.
   [[nodiscard]] Result<Adding> add(const HistorySession& session);
   /// Adds an event to the index and to its file of events.
   [[nodiscard]] Result<void> add_event(const HistoryEvent& event);
-  /// Returns the sessions of all units, or of those with this serial number, ordered by unit and time.
+  /// Returns the sessions of all units, or of the unit with this serial number, ordered by unit and time.
   [[nodiscard]] Result<std::vector<HistorySession>> sessions(const std::optional<std::string>& serial) const;
   /// Returns the events of a unit.
   [[nodiscard]] Result<std::vector<HistoryEvent>> events(const std::string& serial) const;

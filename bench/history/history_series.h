@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of one measure of one unit in the order of time: input of a control chart.
+// Values of one measure of one unit in the order of time, for a control chart.
 #pragma once
 
 #include <optional>
@@ -12,7 +12,7 @@
 
 namespace todbench {
 
-/// Value from before the last event or change of firmware. It is not part of a chart.
+/// Value that precedes the last event or change of firmware, and therefore is not part of a chart.
 struct EarlierValue {
   std::string started_utc;
   ChartValue value;      ///< on the scale of the chart
@@ -31,7 +31,7 @@ struct HistorySeries {
 /// Treatment of measures that have only earlier values.
 enum class WithoutChart { left_out, listed };
 
-/// Returns the series of a serial number and a measure; empty text: all. Errors: those of the index.
+/// Returns the series of a serial number and a measure; an empty text selects all. Errors: those of the index.
 [[nodiscard]] Result<std::vector<HistorySeries>> history_series(const HistoryIndex& index, const std::string& serial,
                                                                 const std::string& measure,
                                                                 WithoutChart without = WithoutChart::left_out);

@@ -32,14 +32,15 @@ struct HistorySession {
   HistoryUnit unit;
   std::string path, manifest_sha256, started_utc, program, state, firmware;
   std::vector<HistoryValue> values;
-  std::string observer{};     ///< observer of the curve; empty: not known
-  bool judged_again = false;  ///< the frames are those of another session, so this is no further check of the unit
+  std::string observer{};  ///< observer of the curve; empty: not known
+  /// True if the frames come from another session, so that this session is not another check of the unit.
+  bool judged_again = false;
   /// Digest of the manifest of the interrupted session whose frames this session contains too.
   std::string resumes_sha256{};
 };
 
-/// Returns the condition under which a value is compared. For an acuity it contains the observer, unless that is hvs-1:
-/// "dT=2K observer hvs-2". Acuities by different observers are not compared.
+/// Returns the condition under which a value is compared. For an acuity it contains the observer, unless the observer
+/// is hvs-1: "dT=2K observer hvs-2". Acuities by different observers are not compared.
 [[nodiscard]] std::string stated_condition(const HistorySession& session, const HistoryValue& value);
 
 /// Reads the record from small files that the manifest confirms. A simulation has the vendor "simulation" and no serial
