@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Budget of a plan applied to a measured curve: intervals that include other sources of uncertainty than the finite
-// number of trials.
+// Application of the budget of a plan to a measured curve: intervals that also include sources of uncertainty other
+// than the finite number of trials.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@
 
 namespace todbench {
 
-/// Row of the budget at one contrast. Its sensitivity is d ln acuity / d value, with the value as stated.
+/// Row of the budget at one contrast. Its sensitivity is d ln acuity / d value, with the value in the unit of the row.
 struct AppliedRow {
   BudgetRow row;
   BudgetInput input = BudgetInput::acuity;
@@ -29,44 +29,47 @@ struct AppliedRow {
   bool from_run = false;            ///< added by the run, not stated in the plan
 };
 
-/// Ratio of acuities, measured over twin; rows common to both cancel.
+/// Intervals of the ratio of the measured acuity to that of the twin. Rows common to both cancel.
 struct ExpandedRatio {
   Interval ci95, ci90;
 };
 
-/// Uncertainty at one contrast. u is that of ln acuity, equal to that of ln S75.
+/// Uncertainty at one contrast. Each u is the standard uncertainty of ln acuity, which equals that of ln S75.
 struct PointUncertainty {
   double set_delta_t_k = 0;
   double contrast_slope = 1;  ///< d ln acuity / d ln contrast
   std::vector<AppliedRow> rows;
   Interval statistical_mrad{};  ///< 95 % interval of S75 from the finite number of trials
-  /// 95 % interval of S75 from all rows; on each side the widest of GUM, Monte Carlo and statistical.
+  /// 95 % interval of S75 from all rows. Each limit is the widest of the GUM, the Monte Carlo and the statistical
+  /// interval.
   Interval expanded_mrad{};
   /// Combined uncertainty for the mean of both half-widths; empty if the threshold or a limit of its interval is
   /// missing.
   std::optional<CombinedUncertainty> combined{};
-  double u_stated = 0;                   ///< from all rows except the finite trials
-  double u_not_twin = 0;                 ///< from the rows that do not cancel in the ratio to the twin
-  double u_not_series = 0;               ///< from the rows that do not cancel in a trend over a series
-  double u_not_contrasts = 0;            ///< from the rows that do not cancel between contrasts
-  std::optional<ExpandedRatio> ratio{};  ///< to the twin; empty without a comparison
+  double u_stated = 0;                   ///< u from all rows except the finite number of trials
+  double u_not_twin = 0;                 ///< u from the rows that do not cancel in the ratio to the twin
+  double u_not_series = 0;               ///< u from the rows that do not cancel in a trend over a series
+  double u_not_contrasts = 0;            ///< u from the rows that do not cancel between contrasts
+  std::optional<ExpandedRatio> ratio{};  ///< ratio to the twin; empty without a comparison
 };
 
 /// Uncertainty of a curve.
 struct CurveUncertainty {
   std::vector<PointUncertainty> points;   ///< in the order of the curve
   std::vector<std::string> not_stated{};  ///< rows of a complete budget that are missing
-  double u_scale = 0;  ///< relative, of the temperature scale and quantities divided by it (relative_u_of_scale())
-  double u_camera_scale = 0;  ///< relative, of kelvin on the camera's scale
-  double u_distance = 0;      ///< relative, of an angle per pixel (relative_u_of_distance())
+  /// Relative standard uncertainty of the temperature scale, and of quantities that are divided by it
+  /// (relative_u_of_scale()).
+  double u_scale = 0;
+  double u_camera_scale = 0;  ///< relative standard uncertainty of kelvin on the scale of the camera
+  double u_distance = 0;      ///< relative standard uncertainty of an angle per pixel (relative_u_of_distance())
 };
 
 /// Returns the point at this set contrast; null if absent.
 [[nodiscard]] const PointUncertainty* point_at(const CurveUncertainty& uncertainty, double set_delta_t_k);
 
-/// Returns the interval of S75 in mrad that the decision uses. For a point with a lapse warning it is the hull of both
-/// fits. It is empty if the slope is at its lower bound, which makes a threshold meaningless, or if the likelihood has
-/// a ridge instead of a maximum.
+/// Returns the interval of S75 in mrad that the decision uses. For a point with a lapse warning, this is the interval
+/// that contains the intervals of both fits. Empty if the slope is at its lower bound, so that the threshold is
+/// meaningless, or if the likelihood has a ridge instead of a maximum.
 [[nodiscard]] Interval deciding_interval(const TodPoint& point);
 
 /// Returns the expanded intervals; empty if the plan has no budget. `plan.seed` seeds the Monte Carlo check.

@@ -12,7 +12,7 @@ namespace todbench {
 
 /// Result of a decision rule.
 enum class ConformityDecision { pass, conditional_pass, inconclusive, conditional_fail, fail };
-/// Returns the words, for example "conditional pass".
+/// Returns the decision in words, for example "conditional pass".
 [[nodiscard]] std::string_view to_string(ConformityDecision decision);
 
 /// One or two limits.
@@ -45,8 +45,8 @@ struct Conformity {
 [[nodiscard]] Result<Conformity> conformity(const MeasuredValue& measured, const ToleranceLimits& tolerance,
                                             ConformityRule rule, double guard_band);
 
-/// Returns the guard band z(1 - r) u, which leaves the risk r of a wrong acceptance for a value at the acceptance
-/// limit; t instead of z for finite degrees of freedom. Precondition: 0 < risk <= 0.5, u > 0.
+/// Returns the guard band z(1 - r) u, with which a value at the acceptance limit has the risk r of a wrong acceptance.
+/// With finite degrees of freedom, t replaces z. Precondition: 0 < risk <= 0.5, u > 0.
 [[nodiscard]] double guard_band_for_risk(double risk, const MeasuredValue& measured);
 
 /// Returns the guard band 2 u; with finite degrees of freedom, the guard band with the same risk by Student's t.

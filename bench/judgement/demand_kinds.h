@@ -28,12 +28,13 @@ struct DemandKindRow {
 /// Returns the row of a kind.
 [[nodiscard]] const DemandKindRow& row_of(DemandKind kind);
 
-/// Returns the measured quantity with this name (measures.json); null if not measured. Lives as long as the evidence.
+/// Returns the measured quantity with this name (measures.json); null if not measured. The pointer is valid as long as
+/// `evidence`.
 [[nodiscard]] const MeasuredQuantity* quantity_of(const JudgementInput& evidence, std::string_view measure);
 
 /// Returns the demand in words, "acuity at 16.9 K at least 0.4 1/mrad".
 [[nodiscard]] std::string in_words(const Demand& demand);
-/// Returns the same at the start of a line: "Acuity at 16.9 K at least 0.4 1/mrad".
+/// Returns the demand in words for the start of a line: "Acuity at 16.9 K at least 0.4 1/mrad".
 [[nodiscard]] std::string title(const Demand& demand);
 
 }  // namespace todbench

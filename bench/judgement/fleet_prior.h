@@ -22,13 +22,14 @@ struct UnitValue {
 /// Normal distribution of the true values, estimated from a number of units.
 struct FleetPrior {
   double mean = 0;
-  double sd = 0;  ///< standard deviation of true values: root of variance of the values minus mean u^2
-  double u = 0;   ///< root mean square of the uncertainties of the values
+  /// Standard deviation of the true values: square root of (variance of the values - mean u^2).
+  double sd = 0;
+  double u = 0;  ///< root mean square of the uncertainties of the values
   int units = 0;
 };
 
 /// Estimates the prior from these units. Errors: `invalid_input` (fewer than least_fleet_units, a value without
-/// uncertainty, or a scatter not above the uncertainties, so that the spread is unknown).
+/// uncertainty, or a scatter that does not exceed the uncertainties, so that the spread is unknown).
 [[nodiscard]] Result<FleetPrior> fleet_prior(std::span<const UnitValue> units);
 
 /// 95 % interval of the standard deviation, from the chi-squared distribution of the variance of the values. Its lower
@@ -39,11 +40,11 @@ struct SpreadInterval {
 /// Returns the interval of the standard deviation of a prior.
 [[nodiscard]] SpreadInterval spread_interval(const FleetPrior& prior);
 
-/// Risks of a measured unit. Its value and u are on the scale of the prior; the error over u is normal or follows
-/// Student's t. Its true value is drawn from the fleet, whose mean has the standard uncertainty sqrt((sd^2 + u^2) /
-/// units); the variances add. `p_conformity`: share of the posterior inside the tolerance (JCGM 106:2012, 7.2). The
-/// other members: as GlobalRisks (JCGM 106:2012, 9). `..._most`: the larger value at the two limits of the spread
-/// interval.
+/// Risks of a measured unit. Its value and u are on the scale of the prior. The measurement error divided by u is
+/// normal or follows Student's t. The true value is drawn from the fleet. The mean of the fleet has the standard
+/// uncertainty sqrt((sd^2 + u^2) / units), and the variances add. `p_conformity`: share of the posterior inside the
+/// tolerance (JCGM 106:2012, 7.2). The other members are as in GlobalRisks (JCGM 106:2012, 9). `..._most`: the larger
+/// of the values at the two limits of the spread interval.
 struct FleetRisks {
   double p_conformity = 0;
   double consumer_risk = 0, producer_risk = 0;
@@ -53,8 +54,8 @@ struct FleetRisks {
 [[nodiscard]] Result<FleetRisks> fleet_risks(const FleetPrior& prior, const MeasuredValue& measured,
                                              const ToleranceLimits& tolerance, const ToleranceLimits& acceptance);
 
-/// Forecast of the effect of a limit on future units of a fleet. `..._most`: the larger value at the two limits of the
-/// spread interval.
+/// Forecast of the effect of a limit on future units of a fleet. `..._most`: the larger of the values at the two limits
+/// of the spread interval.
 struct FleetForecast {
   int units = 0;             ///< number of units of the prior
   double p_good = 0;         ///< probability that a unit is inside the tolerance
@@ -72,9 +73,9 @@ struct FleetForecast {
 /// Returns the prior of a row; for an acuity, in ln acuity.
 [[nodiscard]] FleetPrior prior_of(const FleetRow& row);
 
-/// Adds the risks to every demand with a number, both limits of its interval, and a row in the plan. u is the
-/// half-width towards the limit divided by 1.96, or by Student's t for the degrees of freedom of the demand. The
-/// acceptance limit is that of the decision rule.
+/// Adds the risks to every demand that has a number, both limits of its interval, and a fleet row in the plan. u is the
+/// half-width of the interval towards the limit, divided by 1.96 or by Student's t for the degrees of freedom of the
+/// demand. The decision rule determines the acceptance limit.
 void add_fleet_risks(std::vector<Demand>& demands, const LimitsPlan& limits);
 
 }  // namespace todbench

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decision on one limit for a value with its interval, by a named rule, and the probability that it is wrong.
+// Decision on one limit for a value with its interval, by a named rule, and the probability that the true value meets
+// the limit.
 #pragma once
 
 #include <optional>
@@ -34,10 +35,10 @@ struct LimitAnswer {
   std::optional<double> p_conformity{};
 };
 
-/// Decides by `rule`. The guard band on each side is the half-width of that side, or with `guard_band_risk` the width
-/// that leaves this risk of a wrong acceptance at the acceptance limit. A value on the limit meets the limit. If an
-/// open interval does not allow a decision, the result is inconclusive under every rule. Precondition: 0 <
-/// guard_band_risk <= 0.5.
+/// Decides by `rule`. The guard band on each side is the half-width of the interval on that side. With
+/// `guard_band_risk`, it is the width with which a value at the acceptance limit has this risk of a wrong acceptance. A
+/// value on the limit meets the limit. If an open interval does not allow a decision, the result is inconclusive under
+/// every rule. Precondition: 0 < guard_band_risk <= 0.5.
 [[nodiscard]] LimitAnswer decide(const LimitQuestion& question, ConformityRule rule,
                                  const std::optional<double>& guard_band_risk);
 

@@ -26,10 +26,10 @@ enum class VerdictKind { pass, fail, inconclusive };
 /// Returns the decision rule of the plan in words.
 [[nodiscard]] std::string in_words(ConformityRule rule, const std::optional<double>& guard_band_risk = {});
 
-/// Time at which a verdict was made.
+/// When a verdict was made.
 enum class JudgedWhen {
   at_end_of_run,
-  afterwards,  ///< the run stored none: older program or run that was cut off
+  afterwards,  ///< the run stored no verdict: older program, or a run that was cut off
 };
 /// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(JudgedWhen when);
@@ -41,7 +41,7 @@ enum class JudgedWhen {
 struct DemandKind {
   std::string_view name;
   static const DemandKind acuity;  ///< 75 % acuity at a contrast, [[limits.acuity]]
-  /// A threshold with both limits of its interval, at every contrast without a limit on acuity.
+  /// Requires a threshold with both limits of its interval at every contrast that has no limit on acuity.
   static const DemandKind identified;
   static const DemandKind equivalence;       ///< to the simulated twin, [limits] equivalence_margin_percent
   static const DemandKind scene_dependence;  ///< dependence of the response on a hot bar, `todbench scene-dependence`
@@ -67,9 +67,9 @@ inline constexpr std::array all_ratio_kinds{RatioKind::unpaired, RatioKind::pair
 
 /// Risks of a demand given the fleet of the plan (fleet_prior.h).
 struct DemandFleet {
-  int units = 0;                                          ///< number of units of the fleet prior
-  double p_conformity = 0;                                ///< given the result and the fleet
-  double consumer_risk = 0, producer_risk = 0;            ///< global risks of this rule over the fleet
+  int units = 0;                                ///< number of units of the fleet prior
+  double p_conformity = 0;                      ///< probability that the demand is met, given the result and the fleet
+  double consumer_risk = 0, producer_risk = 0;  ///< global risks of this rule over the fleet
   double consumer_risk_most = 0, producer_risk_most = 0;  ///< upper bounds for a fleet known from so few units, 95 %
 };
 
@@ -81,11 +81,11 @@ struct Demand {
   std::optional<double> result{};
   Interval interval{};        ///< interval that decides
   int interval_percent = 95;  ///< confidence of the interval
-  /// Interval of the finite number of trials alone, if the budget expands the one that decides.
+  /// Interval from the finite number of trials alone; present if the budget expands the deciding interval.
   std::optional<Interval> statistical{};
   VerdictKind decision = VerdictKind::inconclusive;
   std::string reason{};  ///< a sentence
-  /// Decision in the terms of the rule; `decision` shows conditional ones as inconclusive. Empty: the demand has no
+  /// Decision in the terms of the rule. In `decision`, conditional results are inconclusive. Empty: the demand has no
   /// number.
   std::optional<ConformityDecision> conformity{};
   /// Probability that the demand is met, given the result (decide()). Empty: unknown.
@@ -93,7 +93,8 @@ struct Demand {
 
   std::optional<double> degrees_of_freedom{};  ///< degrees of freedom of the interval; empty: infinite
 
-  std::optional<DemandFleet> fleet{};  ///< if the plan states one
+  /// Risks given the fleet; present if the plan states a fleet row for this demand.
+  std::optional<DemandFleet> fleet{};
 
   std::optional<std::string> zone{};  ///< zone of the frame; empty if the demand does not concern a zone
   std::optional<RatioKind> ratio{};   ///< kind of ratio of an equivalence demand that was judged
@@ -127,13 +128,14 @@ struct MeasuredQuantity {
 /// Input of judge(). Borrows for the call.
 struct JudgementInput {
   const LimitsPlan& limits;
-  const TodCurve& curve;  ///< without points if the run ended before the first one
+  const TodCurve& curve;  ///< curve; has no points if the run ended before the first point
   const std::optional<Comparison>& comparison;
   std::optional<std::string> ended_early{};
   JudgedWhen judged = JudgedWhen::at_end_of_run;
   const CurveUncertainty* uncertainty = nullptr;  ///< uncertainty of the curve; null: the plan has no budget
-  /// Transmittance of the bench, if camera and target both state the contrast in kelvin. Without a budget, a limit is
-  /// then judged at the set contrast as each of them shows it. Empty: the contrasts are not compared.
+  /// Transmittance of the bench, if camera and target both state the contrast in kelvin. Then, without a budget, a
+  /// limit on an acuity is judged with an interval that holds for both contrasts, set and observed, if they differ by
+  /// more than two standard errors. Empty: the contrasts are not compared.
   std::optional<double> air_transmittance{};
   /// Measures of the camera, or of the simulated sensor alone; empty: none measured.
   std::optional<std::vector<MeasuredQuantity>> measures{};

@@ -12,7 +12,7 @@ namespace todbench {
 [[nodiscard]] Json verdict_json(const Verdict& verdict);
 /// Returns the content of verdict.json, with the same keys. Errors: json_of().
 [[nodiscard]] Result<Json> verdict_record(const Verdict& verdict);
-/// Parses a record. Errors: from_json(); another unit than that of the kind.
+/// Parses a record. Errors: those of from_json(), also for a unit that differs from the unit of the kind.
 [[nodiscard]] Result<Verdict> verdict_from(const Json& record);
 
 }  // namespace todbench
