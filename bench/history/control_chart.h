@@ -61,7 +61,7 @@ struct ControlChart {
 /// Kind of a predicted crossing.
 enum class CrossingKind {
   found,       ///< between `earliest_days` and `latest_days`
-  not_before,  ///< only `earliest_days` exists, because the slope is not significant
+  not_before,  ///< `latest_days` is empty, because the slope is not significant
   never,       ///< the data exclude a future crossing
 };
 /// Returns the name of the enumerator.

@@ -43,8 +43,8 @@ struct SpreadInterval {
 /// Risks of a measured unit. Its value and u are on the scale of the prior. The measurement error divided by u is
 /// normal or follows Student's t. The true value is drawn from the fleet. The mean of the fleet has the standard
 /// uncertainty sqrt((sd^2 + u^2) / units), and the variances add. `p_conformity`: share of the posterior inside the
-/// tolerance (JCGM 106:2012, 7.2). The other members are as in GlobalRisks (JCGM 106:2012, 9). `..._most`: the larger
-/// of the values at the two limits of the spread interval.
+/// tolerance (JCGM 106:2012, 7.2). The other members are as in GlobalRisks (JCGM 106:2012, 9). `..._most`: the largest
+/// of the values at the estimated standard deviation and at both limits of its interval.
 struct FleetRisks {
   double p_conformity = 0;
   double consumer_risk = 0, producer_risk = 0;
@@ -54,8 +54,8 @@ struct FleetRisks {
 [[nodiscard]] Result<FleetRisks> fleet_risks(const FleetPrior& prior, const MeasuredValue& measured,
                                              const ToleranceLimits& tolerance, const ToleranceLimits& acceptance);
 
-/// Forecast of the effect of a limit on future units of a fleet. `..._most`: the larger of the values at the two limits
-/// of the spread interval.
+/// Forecast of the effect of a limit on future units of a fleet. `..._most`: the largest of the values at the estimated
+/// standard deviation and at both limits of its interval.
 struct FleetForecast {
   int units = 0;             ///< number of units of the prior
   double p_good = 0;         ///< probability that a unit is inside the tolerance
