@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangles on a calibrated display, without camera and sensor, for a person: plain, or in white noise. The answers
-// determine the open parameters of an observer with an eye.
+// Triangles on a calibrated display, without camera and sensor, for a person: without noise, or in white noise. The
+// answers determine the open parameters of an observer with an eye.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace todbench {
 
 /// Experiment for one person.
 struct NakedEyeTask {
-  TemplateObserverSpec model;  ///< with an eye, and with the calibrated display of the person
+  TemplateObserverSpec model;  ///< observer with an eye, and with the calibrated display of the person
   /// Luminance contrasts: target minus background over background, above 0. Targets are brighter than the background.
   std::vector<double> contrasts{0.4, 0.15, 0.06};
   double noise = 0;   ///< standard deviation of white noise per displayed sample, as a luminance contrast
@@ -28,8 +28,8 @@ struct NakedEyeTask {
 /// cannot show).
 [[nodiscard]] Result<void> validate(const NakedEyeTask& task);
 
-/// Returns the display with luminance in proportion to the level, on which 1 K is a luminance contrast of 1. It
-/// describes the pictures on the screen, because they are drawn through the measured luminances. Precondition:
+/// Returns a display whose luminance is proportional to the level and on which 1 K is a luminance contrast of 1. It
+/// describes what the person sees, because pictures are drawn with the measured luminances of the levels. Precondition:
 /// validate() of the display succeeds.
 [[nodiscard]] ViewedDisplay linear_display(const ViewedDisplay& display);
 
@@ -38,7 +38,7 @@ struct NakedEyeTask {
 /// Returns the angle of a displayed sample at the eye, in mrad.
 [[nodiscard]] double mrad_per_sample(const ViewedDisplay& display);
 
-/// Number of sizes at each contrast, and the ratio of neighbouring ones; the fourth is near the predicted threshold.
+/// Number of sizes at each contrast, and ratio of neighbouring sizes. The fourth size is near the predicted threshold.
 inline constexpr int naked_eye_sizes = 8;
 inline constexpr double naked_eye_size_ratio = 1.22;
 
@@ -54,19 +54,20 @@ struct NakedEyeTrial {
 /// A picture as the display shows it.
 struct NakedEyePicture {
   cv::Mat1b levels;    ///< one per displayed sample
-  cv::Mat1f contrast;  ///< luminance contrast of every sample to the background, by its level
-  double noise = 0;    ///< standard deviation per sample: the noise of the task, and that of rounding to levels
+  cv::Mat1f contrast;  ///< luminance contrast of every sample against the background, from its level
+  /// Standard deviation per sample: the noise of the task combined with the noise of rounding to levels.
+  double noise = 0;
 };
 
-/// Draws a square picture of `window_samples` on a side. The luminance of a sample follows from the share that the
-/// triangle covers. It is rounded up or down at random to one of 256 levels, so that the mean is the luminance and
-/// contrasts far below one level can be shown. Noise and rounding follow from the seed of the task and the number of
-/// the trial.
+/// Draws a square picture of `window_samples` on a side. The luminance of a sample follows from the share of its area
+/// that the triangle covers. It is rounded up or down at random to one of 256 levels. The mean level then represents
+/// the luminance, so that contrasts far below one level can be shown. Noise and rounding follow from the seed of the
+/// task and the number of the trial.
 [[nodiscard]] NakedEyePicture naked_eye_picture(const NakedEyeTask& task, const NakedEyeTrial& trial,
                                                 int window_samples);
 
 /// Returns the trials of every contrast and size, with each direction equally often, in random order. `sizes_samples`:
-/// by contrast.
+/// sizes in displayed samples for each contrast.
 [[nodiscard]] std::vector<NakedEyeTrial> naked_eye_trials(const NakedEyeTask& task,
                                                           const std::vector<std::vector<double>>& sizes_samples);
 

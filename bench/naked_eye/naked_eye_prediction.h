@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Prediction of an observer with an eye for a naked-eye session, before a person answers.
+// Prediction for a naked-eye session by an observer that has an eye, made before the person answers.
 #pragma once
 
 #include <optional>
@@ -28,7 +28,7 @@ struct NakedEyeContrast {
   /// Lowest and highest S75 over the open parameters (hvs/observer/open_parameters.h); not a confidence interval. A
   /// side is empty if the model has no threshold there.
   std::optional<double> spread_low_mrad, spread_high_mrad;
-  std::vector<NakedEyeShare> sizes;  ///< rising
+  std::vector<NakedEyeShare> sizes;  ///< in increasing order
 };
 
 /// Prediction at all contrasts.

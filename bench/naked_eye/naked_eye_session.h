@@ -39,8 +39,8 @@ class NakedEyeSession {
   [[nodiscard]] const NakedEyePicture& picture() const { return picture_; }
   /// Records the answer to picture(). `response_s`: time from display to answer.
   void answer(Apex answer, double response_s, std::optional<int> limit_ms);
-  /// Writes the answers so far, the facts of the person who gave them and the comparison, once. Errors:
-  /// `invalid_input` (no answers), `io`.
+  /// Writes the answers so far, the facts about the person, and the comparison. Call it once. Errors: `invalid_input`
+  /// (no answers), `io`.
   [[nodiscard]] Result<void> finish(const PersonFacts& person);
   /// Returns the record. Precondition: finish() was called.
   [[nodiscard]] const HumanRecord& record() const { return *record_; }
@@ -63,11 +63,11 @@ class NakedEyeSession {
   Json comparison_;
 };
 
-/// Returns the answers of a person with the prediction: "contrasts" (s75_mrad, s75_ci95_mrad, predicted_s75_mrad,
-/// predicted_spread_mrad, inside_spread, sizes), and the chi-squared test of the model itself.
+/// Compares the answers of a person with the prediction. Returns "contrasts" (s75_mrad, s75_ci95_mrad,
+/// predicted_s75_mrad, predicted_spread_mrad, inside_spread, sizes), and the chi-squared test of the model itself.
 [[nodiscard]] Json naked_eye_comparison(const NakedEyePrediction& prediction, const HumanRecord& record);
 
-/// Returns whether the folder is that of a naked-eye session.
+/// Returns whether the folder contains a naked-eye session.
 [[nodiscard]] bool is_naked_eye_session(const std::filesystem::path& folder);
 /// Reads the answers for a fit. Errors: `invalid_input` (no answers, or files that differ from the manifest), `io`.
 [[nodiscard]] Result<AnsweredSession> answered_naked_eye(const std::filesystem::path& folder);
