@@ -8,9 +8,9 @@
 
 namespace todbench {
 
-/// Returns an observer description as plans name it, with a table [fit] of its origin: program, parameters with
-/// intervals, correlations, and hashes of the sessions. The lapse rate is only in [fit], because the template observer
-/// has no lapse rate.
+/// Returns the text of an observer description that plans can name. Its table [fit] states the origin: program,
+/// parameters with intervals, correlations, and hashes of the sessions. The lapse rate is only in [fit], because the
+/// template observer has no lapse rate.
 [[nodiscard]] std::string observer_file(const PeopleFit& fit);
 
 }  // namespace todbench

@@ -18,9 +18,9 @@
 
 namespace todbench {
 
-/// The answers of one person in one session.
+/// Answers of one person at one sitting of a session.
 struct AnsweredSession {
-  std::string folder;           ///< its name without the parent folders
+  std::string folder;           ///< name of the session folder, without its parent folders
   std::string person{};         ///< code of the person; empty: not stated
   std::size_t number = 1;       ///< number of the sitting in the session, in the order of the answers
   std::size_t sittings = 1;     ///< number of sittings in the session
@@ -31,18 +31,18 @@ struct AnsweredSession {
   std::optional<ViewedDisplay> display{};  ///< display of the plan, for an observer with an eye
   HumanRecord human;
 };
-/// Reads the answers of all people of an opened session, in their order, or those of one person: a code, or for a
-/// person without a code the number of the sitting. Errors: `invalid_input` (no answers, or none of this person, or the
-/// shown pictures were not stored).
+/// Reads the answers of an opened session: of all people in the order of their sittings, or of `person` only. `person`:
+/// code of the person, or the number of the sitting for a person without a code. Errors: `invalid_input` (no answers,
+/// no answers of this person, or the shown pictures were not stored).
 [[nodiscard]] Result<std::vector<AnsweredSession>> answered_sessions(const std::filesystem::path& folder,
                                                                      const Session& session,
                                                                      const std::optional<std::string>& person);
-/// Returns the folder of the answers, and the person if the session has several.
+/// Returns a label for the answers: the folder, and the person if the session has several sittings.
 [[nodiscard]] std::string label_of(const AnsweredSession& session);
 
 /// Assignment of sittings to people.
 enum class PersonsAre {
-  codes,  ///< sittings with one code are a person; every sitting without a code is a person
+  codes,  ///< sittings with the same code belong to one person; every sitting without a code is a person
   one,    ///< one person answered in all sessions
 };
 
@@ -75,10 +75,10 @@ struct ShownSize {
 
 /// Fit of one person.
 struct FittedPerson {
-  std::vector<std::size_t> sessions;  ///< index of each
+  std::vector<std::size_t> sessions;  ///< indices in PeopleFit::sessions
   PersonFit fit;
   Goodness goodness;
-  std::vector<ShownSize> cells;  ///< by Goodness::cells[].cell
+  std::vector<ShownSize> cells;  ///< contrasts and sizes; the index is Goodness::cells[].cell
 };
 
 /// Fit of all people.
@@ -89,8 +89,8 @@ struct PeopleFit {
   std::array<PeopleSpread, observer_key_count> spread{};  ///< spread of the free parameters; empty for one person
   ObserverValues values{};                                ///< values of the person, or means over people
   std::array<Interval, observer_key_count> ci95{};
-  double least_p = 1;                       ///< smallest p of the model over people
-  bool accepted = false;                    ///< p exceeds least_p of the options for every person
+  double least_p = 1;                       ///< smallest p of the model among the people
+  bool accepted = false;                    ///< p exceeds the limit from `options.least_p` for every person
   std::vector<std::string> not_identified;  ///< sentences: parameters that the answers do not determine
   /// Returns whether the fitted observer may be used.
   [[nodiscard]] bool usable() const { return accepted && not_identified.empty(); }
@@ -104,9 +104,10 @@ struct PeopleFit {
 /// Returns the values of an observer before the fit, by ObserverKey.
 [[nodiscard]] ObserverValues start_values(const TemplateObserverSpec& from);
 
-/// Returns the distance of a fitted value from that of `from`, in units of the spread of hvs-2: half of the range over
-/// which public data leave the parameter open (gain +-4 dB, contrast noise 0 to 0.07, sensor-noise factor 1.1 to 3.2;
-/// decibels and factors by logarithms). Empty for other parameters, and for an observer without an eye.
+/// Returns the difference between a fitted value and the value of `from`, in units of the spread of hvs-2. The spread
+/// is half of the range over which public data leave the parameter open (gain +-4 dB, contrast noise 0 to 0.07,
+/// sensor-noise factor 1.1 to 3.2); for decibels and factors it is taken in logarithms. Empty for other parameters, and
+/// for an observer without an eye.
 [[nodiscard]] std::optional<double> spreads_from_default(const PeopleFit& fit, std::size_t key);
 
 /// Returns the fitted observer.
