@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Purpose of a line, which is also the name of its layer in the file.
+/// Purpose of a line. It is also the name of the layer of the line in the file.
 enum class SheetLayer { cut, dimension, text };
 /// Returns the name of the layer, in capitals.
 [[nodiscard]] std::string_view to_string(SheetLayer layer);
@@ -52,8 +52,9 @@ struct CutOutRow {
   Polygon outline_mm;
 };
 /// Returns the cut-outs in the order of the plate: triangles, rectangles, bars. `size_percent`: permitted error of a
-/// size. All edges of an equilateral triangle displaced by d change its size S by d / (3^(-3/4) S), so the tolerance of
-/// an edge is size_percent of 0.4387 S; for rectangles and bars it is size_percent of half the shorter side.
+/// size. If all edges of an equilateral triangle are displaced by d, its size S changes by the share d / (3^(-3/4) S).
+/// The tolerance of an edge is therefore size_percent of 0.4387 S. For rectangles and bars it is size_percent of half
+/// the shorter side.
 [[nodiscard]] std::vector<CutOutRow> cut_out_rows(const TargetPlate& plate, double size_percent);
 
 /// Relative errors of the size of a triangle, in percent. An error of all sizes changes the acuity by the same
@@ -61,7 +62,8 @@ struct CutOutRow {
 struct SizeErrors {
   double edges_percent = 0;    ///< all edges displaced outwards: d / (0.4387 S)
   double corners_percent = 0;  ///< corners rounded with a radius r: 1.027 (r / S)^2, always smaller
-  double sheet_percent = 0;  ///< straight walls of a sheet, observed from the distance, at the position of the triangle
+  /// Straight walls of a sheet, seen from the distance of observation, at the position of the triangle.
+  double sheet_percent = 0;
 };
 /// Errors of manufacture, and the distance of observation.
 struct MakingErrors {
@@ -70,9 +72,9 @@ struct MakingErrors {
   double thickness_mm = 1;
   double distance_m = 2;
 };
-/// Returns the errors for a triangle. A sheet of thickness t with straight walls shows the intersection of the outline
-/// with the outline of its back, which is shifted by t r / D towards the centre of the plate; r is the distance of the
-/// triangle from the centre.
+/// Returns the errors for a triangle. A camera at the distance D sees, through a sheet of thickness t with straight
+/// walls, the intersection of the front outline with the back outline. The back outline is shifted by t r / D towards
+/// the centre of the plate, where r is the distance of the triangle from the centre.
 [[nodiscard]] SizeErrors size_errors(const PlateTriangle& triangle, const MakingErrors& errors);
 
 /// Returns the drawing. Errors: `invalid_input` (a plate without cut-outs).
