@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parts of the Python module. Each source file adds the classes and functions of a few folders and computes no results
-// itself.
+// Parts of the Python module. Each source file adds the classes and functions of a few folders, and contains no
+// computations of its own.
 #pragma once
 
 #include <optional>
@@ -39,11 +39,11 @@ auto from_keywords() {
   });
 }
 
-/// Returns a document of the bench as dictionaries, lists and numbers.
+/// Returns a JSON document as Python dictionaries, lists, texts and numbers.
 [[nodiscard]] py::object python_of(const Json& json);
 
-/// Pictures of an array of three dimensions, or of a sequence of pictures. They are used without a copy if they have
-/// the pixel type. `kept` holds the arrays.
+/// Pictures from an array of three dimensions, or from a sequence of pictures. Pictures that already have the pixel
+/// type are not copied. `kept` keeps the arrays alive.
 template <typename Pixel>
 struct GivenPictures {
   std::vector<py::object> kept;
@@ -54,7 +54,7 @@ template <typename Pixel>
 GivenPictures<Pixel> given_pictures(const py::sequence& frames) {
   GivenPictures<Pixel> given;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    // A sequence may make its elements when asked.
+    // A sequence may create its elements on access.
     const py::object frame = frames[i];
     using Array = py::array_t<Pixel, py::array::c_style | py::array::forcecast>;
     auto array = Array::ensure(frame);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Conversion of values of the libraries to values of Python: pictures to numpy arrays that share their pixels,
+// Conversion between values of the libraries and values of Python: pictures to numpy arrays that share their pixels,
 // enumerators to their names, intervals and points to tuples. Every source file of the module includes this header.
 #pragma once
 
@@ -58,7 +58,7 @@ pybind11::array_t<T> array_of(const std::vector<T>& values) {
   return pybind11::array_t<T>(static_cast<pybind11::ssize_t>(values.size()), values.data());
 }
 
-/// Returns the names of an enumeration that Python may pass; empty: the enumeration is only returned.
+/// Returns the enumerators whose names Python may pass; empty: Python only receives values of the enumeration.
 template <typename Enum>
 constexpr std::span<const Enum> names_taken() {
   return {};
@@ -180,8 +180,8 @@ struct type_caster<cv::Rect> {
   }
 };
 
-/// A picture that Python passes is used without a copy during the call, if its numbers have the pixel type and its rows
-/// are contiguous.
+/// Conversion of pictures. A picture from Python is not copied for the call if its numbers have the pixel type and its
+/// rows are contiguous.
 template <typename Pixel>
 struct type_caster<cv::Mat_<Pixel>> {
   using Array = array_t<Pixel, array::c_style | array::forcecast>;
