@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ranges through turbulence. The blur of turbulence grows with the range, so the inputs of the models depend on their
-// result.
+// Ranges through turbulence. The blur by turbulence increases with the range, so the inputs of the models depend on
+// their result.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@
 
 namespace todbench {
 
-/// Inputs of the range models behind a given turbulent path of constant Cn2. Immutable.
+/// Inputs of the range models behind a turbulent path of constant Cn2 and given length. Immutable.
 class TurbulentSources {
  public:
   /// Prepares the sources. `still`: sources without turbulence, with a sensor. Thresholds of the TOD curve change by
@@ -48,15 +48,16 @@ class TurbulentSources {
   std::map<double, std::vector<std::optional<double>>> ln_factors_;  ///< by contrast, at `paths_m_`
 };
 
-/// Returns the range that equals the path behind which it is computed. Precondition: `range_behind` does not increase.
-/// Empty if `range_behind` has no value.
+/// Solves R = range_behind(R) for a range of at most `still_m` and returns R. `range_behind`: range computed with the
+/// turbulence of a path of this length. Precondition: `range_behind` does not increase. Empty if `range_behind` has no
+/// value.
 [[nodiscard]] std::optional<double> self_consistent_range(
     double still_m, const std::function<std::optional<double>(double path_m)>& range_behind);
 
 /// Decision about turbulence for the TOD model.
 struct TurbulenceDecision {
   bool simulated = true;
-  double bound_percent = 0;  ///< on the change of the acuity at the 75 % range
+  double bound_percent = 0;  ///< upper bound on the change of the acuity at the 75 % range
   std::string reason;        ///< a sentence
 };
 /// Decides like the planner of effects: turbulence is skipped if the bound on the change of the acuity, at the range
@@ -64,9 +65,8 @@ struct TurbulenceDecision {
 [[nodiscard]] TurbulenceDecision decide_turbulence(const SensorSpec& sensor, double cn2, const RangeQuestion& question,
                                                    std::optional<double> still_r75_m, double tolerance_percent);
 
-/// Evaluates the models as range_models() does, with turbulence. Every range is solved with the curve behind its own
-/// path, and P at every range is interpolated between 16 paths. Sensitivities are those of the curve behind the 75 %
-/// range.
+/// Evaluates the models as range_models() does, with turbulence. Each range is computed with the curve behind a path of
+/// that range. P is interpolated between 16 paths. Sensitivities are computed with the curve behind the path of R75.
 [[nodiscard]] Result<std::vector<ModelRange>> turbulent_range_models(std::span<const RangeModel> asked,
                                                                      const TurbulentSources& sources,
                                                                      const RangeQuestion& question);
