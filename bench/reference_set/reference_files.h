@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Returns a description with every key of a sensor.
+/// Returns the text of a sensor description with every key.
 [[nodiscard]] std::string sensor_description(const SensorSpec& sensor);
 /// Returns set.json.
 [[nodiscard]] std::string set_description(const ReferenceSetOptions& options,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Comparison of submitted thresholds with those of the reference set.
+// Comparison of submitted thresholds with the true thresholds of the reference set.
 #pragma once
 
 #include <optional>
@@ -19,9 +19,9 @@ struct ReferenceResult {
   double s75_mrad = 0;
   std::optional<Interval> ci95_mrad;  ///< with both limits
 };
-/// Parses columns case, s75_mrad and optionally the pair s75_ci95_low_mrad, s75_ci95_high_mrad, in any order; one row
-/// for each of `truths`. Errors: `invalid_input` "NAME:LINE: ..." (column unknown, missing or repeated; case unknown,
-/// repeated or without a row; size not above 0; interval that does not contain the size).
+/// Parses a CSV text with the columns case, s75_mrad and optionally the pair s75_ci95_low_mrad, s75_ci95_high_mrad, in
+/// any order. Requires one row for each of `truths`. Errors: `invalid_input` "NAME:LINE: ..." (column unknown, missing
+/// or repeated; case unknown, repeated or without a row; size not above 0; interval that does not contain the size).
 [[nodiscard]] Result<std::vector<ReferenceResult>> parse_reference_result(std::string_view text, std::string_view name,
                                                                           std::span<const ReferenceTruth> truths);
 
@@ -31,12 +31,12 @@ struct CaseScore {
   ReferenceResult result;
   double deviation_percent = 0;
   bool within = false;                 ///< within the tolerance
-  std::optional<bool> interval_holds;  ///< whether the interval contains the true threshold
+  std::optional<bool> interval_holds;  ///< true if the interval contains the true threshold; empty: no interval
 };
 /// Score of all cases.
 struct ReferenceScore {
   std::vector<CaseScore> cases;       ///< in the order of the truths
-  double mean_deviation_percent = 0;  ///< mean of the deviations of the logarithm: a common bias
+  double mean_deviation_percent = 0;  ///< mean of the deviations in the logarithm: a common bias
   double rms_deviation_percent = 0;
   bool passed = false;  ///< every case is within the tolerance
 };
