@@ -74,7 +74,7 @@ struct LaboratorySummary {
 /// Laboratory or single result with a deviation that is too large to be random.
 struct OutlyingResult {
   std::string laboratory, item, quantity;  ///< empty item: the laboratory over all its items
-  double zeta = 0;                         ///< against the others that were kept when it was found
+  double zeta = 0;                         ///< zeta against the results that were not yet excluded when it was found
   double p = 0;                            ///< probability of such a deviation of any laboratory by chance
 };
 
@@ -96,7 +96,7 @@ inline constexpr double outlying_significance = 0.025;
 /// Evaluates a comparison. The errors of a laboratory are taken as independent between items. The most improbable
 /// outlying laboratory or result is excluded, and the others are tested again. If this would leave no more than half of
 /// the laboratories of an item, none is excluded. If several laboratories are outlying, all may understate their
-/// uncertainties; the reference values then come from all results. `seed`: of the draws of the medians. Errors:
+/// uncertainties; the reference values then come from all results. `seed`: seed of the draws for the medians. Errors:
 /// `invalid_input` (no item, or an item with fewer than two laboratories).
 [[nodiscard]] Result<RoundRobin> evaluated(std::vector<ComparedItem> items, std::uint64_t seed);
 
