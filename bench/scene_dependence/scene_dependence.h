@@ -34,7 +34,7 @@ enum class SceneDependenceVerdict {
 struct SizeDependence {
   double size_mm = 0, size_px = 0;
   int triangles = 0;
-  double ratio = 1;  ///< response with the bar in the field over that without it
+  double ratio = 1;  ///< response with the bar in the field divided by the response without it
   Interval ci95;     ///< simultaneous for all sizes: each at 1 - 0.05 / number of sizes
 };
 
@@ -61,24 +61,25 @@ struct SceneDependenceOptions {
   int frames = 16;               ///< averaged per position of the bar
   int settle_frames = 0;         ///< discarded after the bar has moved, in addition to those of the plan
   double tolerance_percent = 2;  ///< largest allowed change of the response
-  /// Called before the first frame, when all parts are ready. An error ends the run. Optional.
+  /// Function called before the first frame, when all parts are ready. An error ends the run. Optional.
   std::function<Result<void>(const SourceInfo& camera, const Target& target)> on_begin{};
 };
 
 /// Function that moves the bar into the field or out of it.
 using MoveBar = std::function<Result<void>(bool in, std::stop_token stop)>;
 
-/// Measures the dependence. The response of a size is the regression of its windows, with the bar outside or inside, on
-/// the windows of the picture in which the plate is located; this picture is common to both cases. Errors: those of
-/// measure() until the first frame, `calibration` if the plate has moved, `invalid_input` for options out of range.
+/// Measures the dependence. The response of a size is the regression slope of the windows around its triangles on the
+/// same windows of a reference picture. The reference is the picture in which the plate was located, and is common to
+/// the bar outside and inside. Errors: those of measure() until the first frame, `calibration` if the plate has moved,
+/// `invalid_input` for options out of range.
 [[nodiscard]] Result<SceneDependence> measure_scene_dependence(FrameSource& camera, Target& target,
                                                                const MoveBar& move_bar, const TargetState& state,
                                                                Observer& observer, const MeasurementOptions& measuring,
                                                                const SceneDependenceOptions& options,
                                                                RunController& host, std::stop_token stop);
 
-/// Returns `camera` with `kelvin` added to a bar next to the plate while `*in` is true. The counts have a linear scale
-/// and are clipped at full scale.
+/// Returns a camera that passes on the frames of `camera` and adds `kelvin` to `bar` while `*in` is true. The counts
+/// have a linear scale and are clipped at full scale.
 [[nodiscard]] std::unique_ptr<FrameSource> with_hot_bar(std::unique_ptr<FrameSource> camera, cv::Rect bar,
                                                         double kelvin, std::shared_ptr<const bool> in);
 /// Returns the place of the bar: left of a plate in the centre of the picture, 1/20 of its width and 3/5 of its height.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scene dependence as a session without a curve: its numbers are measures, and its limit is the tolerance.
+// Session of a scene-dependence test. It has no curve; its numbers are measures, and its only limit is the tolerance.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@ namespace todbench {
 
 /// Parameters of the test.
 struct SceneDependenceTask {
-  std::optional<EnhancementPackage> package{};  ///< behind the simulated sensor; stored in the session
+  std::optional<EnhancementPackage> package{};  ///< package behind the simulated sensor; stored in the session
   double bar_k = 40;                            ///< contrast of the simulated bar
   SceneDependenceOptions options{};
 };
