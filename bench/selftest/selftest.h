@@ -28,9 +28,9 @@ struct SelftestGroup {
 /// Returns the groups in the order of selftest().
 [[nodiscard]] std::vector<SelftestGroup> selftest_groups();
 
-/// Computes all cases: closed forms, 50-digit references, hard cases, the numbers of every part, the same bits on two
-/// threads, and the first case of the reference set. Takes about half a second of processor time. Errors:
-/// `interrupted`.
+/// Computes all cases: closed forms, references with 50 digits, hard cases, numbers of every part of the program,
+/// equality of the bits on two threads, and the first case of the reference set. Takes about half a second of processor
+/// time. Errors: `interrupted`.
 [[nodiscard]] Result<std::vector<SelftestCase>> selftest(std::stop_token stop);
 
 }  // namespace todbench

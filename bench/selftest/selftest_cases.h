@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Groups of the self-test, and the inputs that its tests use again.
+// Groups of the self-test, and their inputs, which other tests use too.
 #pragma once
 
 #include <complex>
@@ -18,7 +18,7 @@ namespace todbench {
 
 using SelftestCases = std::vector<SelftestCase>;
 
-/// Counts whose maximum of the likelihood is hard to reach in double precision.
+/// Counts for which the maximum of the likelihood is hard to find in double precision.
 struct HardFit {
   std::string name;
   std::vector<Level> levels;
@@ -38,8 +38,8 @@ struct HardSpectrum {
 /// Returns the hard spectra.
 [[nodiscard]] std::vector<HardSpectrum> hard_spectra();
 
-/// Returns numbers of all parts of the computation by name: fits, posteriors, placement, spectra, optics, pixels,
-/// orthant probability, thresholds, a frame.
+/// Computes numbers with all parts of the program and returns them by name: fits, posteriors, placement, spectra,
+/// optics, pixels, orthant probability, thresholds, a frame.
 [[nodiscard]] std::map<std::string, double> numbers_of_every_part();
 /// Returns the same numbers as computed with GCC 12.
 [[nodiscard]] const std::map<std::string, double>& golden_numbers();
