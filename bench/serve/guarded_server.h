@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HTTP server that limits the file descriptors and the time that clients can take from a run. For bench/serve and
+// HTTP server with limits on file descriptors and time, so that clients cannot disturb a run. For bench/serve and
 // bench/run_control.
 #pragma once
 
@@ -39,9 +39,9 @@ class BoundedQueue : public httplib::TaskQueue {
   std::vector<std::thread> workers_;
 };
 
-/// Server with one request per connection, which must arrive within one second and be sent within three from its first
-/// byte. A connection is closed if its descriptor is among the last available to the process, because the run needs
-/// them.
+/// Server with one request per connection. The request must arrive within one second, and the response must be sent
+/// within three seconds after its first byte. The server closes a connection if its file descriptor is among the last
+/// available to the process, because the run needs these.
 class GuardedServer : public httplib::Server {
  public:
   GuardedServer();
@@ -61,15 +61,15 @@ class GuardedServer : public httplib::Server {
   std::thread thread_;
 };
 
-/// Sets headers that forbid external resources, embedding in frames, and a referrer with the token.
+/// Sets headers that forbid external resources, embedding in frames, and referrers (which would reveal the token).
 void guard(httplib::Response& response);
 /// Sets the headers for a file of a session, which contains its style and pictures and runs no script.
 void guard_report(httplib::Response& response);
 /// Returns 128 random bits as text. They come from the random source of the system and not from the seed of the
 /// experiment, because they must not be predictable.
 [[nodiscard]] std::string random_token();
-/// Binds to the address, port 0: any free one. Returns the port. Errors: `io` (port in use, or not an address of this
-/// computer).
+/// Binds to the address and returns the port. Port 0 selects any free port. Errors: `io` (port in use, or not an
+/// address of this computer).
 [[nodiscard]] Result<int> bind_to(GuardedServer& server, const ServeAddress& address);
 /// Returns "http://127.0.0.1:8080/".
 [[nodiscard]] std::string url_of(const ServeAddress& address, int port);

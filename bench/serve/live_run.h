@@ -23,7 +23,7 @@ namespace todbench {
 /// Activity of a run, for an occasional viewer.
 enum class LiveStatus {
   running,
-  settling,         ///< plate, mounting and position are set, the contrast is not stable yet
+  settling,         ///< plate, mounting and position are set; the contrast is not yet stable
   plate_change,     ///< the stage is moving
   operator_needed,  ///< the operator must do the step
   camera_lost,      ///< waiting for the camera
@@ -33,8 +33,8 @@ enum class LiveStatus {
 /// Returns "running", "settling", "plate-change", "operator", "camera-lost", "finished" or "stopped".
 [[nodiscard]] std::string_view to_string(LiveStatus status);
 
-/// Content of state.json: one object with these names, numbers and texts (`status` as "state"). `verdict` is null until
-/// it exists, `reason` is null unless the run stopped.
+/// Content of state.json: one object whose keys are the names of these members ("state" for `status`). `verdict` is
+/// null until it exists, `reason` is null unless the run stopped.
 struct LiveState {
   LiveStatus status = LiveStatus::running;
   std::string name, phase, waiting;
@@ -50,7 +50,8 @@ struct LiveState {
 /// Returns a frame as a grey PNG from its 0.05 % to its 99.95 % quantile; empty if the frame has no pixels.
 [[nodiscard]] std::string picture_of(const Frame& frame);
 
-/// Renderer of curve and picture on its own thread, about twice a second. Calls from the run only store values.
+/// Renders curve and picture on its own thread, about twice a second. Calls from the run only store values, so that
+/// they do not delay it.
 class LiveRun {
  public:
   /// Receives new content, on the drawing thread or on the thread of end().
@@ -71,7 +72,7 @@ class LiveRun {
  private:
   void work(const std::stop_token& stop);
   void render();
-  /// Sets the most important current status. Requires the lock.
+  /// Sets the status to the most important condition that currently holds. Requires the lock.
   void set_status();
 
   Show show_;

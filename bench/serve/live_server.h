@@ -34,8 +34,8 @@ class LiveServer {
   [[nodiscard]] const std::string& url() const { return url_; }
   /// Replaces the content. Any thread.
   void show(std::shared_ptr<const LivePages> pages);
-  /// Waits until a client has requested the latest content. Returns immediately if there was no request in the last
-  /// five seconds; otherwise after at most `patience`.
+  /// Waits until a client has requested the latest content, at most `patience`. Returns immediately if there was no
+  /// request in the last five seconds.
   void wait_until_seen(std::chrono::milliseconds patience);
 
  private:
