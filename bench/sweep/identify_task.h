@@ -15,7 +15,7 @@
 namespace todbench {
 
 /// Returns whether a key belongs to the identification: set, ranges_m, atmosphere, haze, extinction_per_km,
-/// cn2_m_minus_2_3, decisions, cues, m75. All other keys are those of plan and sensor.
+/// cn2_m_minus_2_3, decisions, cues, m75. All other keys belong to the plan and the sensor.
 [[nodiscard]] bool is_identification_key(std::string_view key);
 
 /// Returns the study of a task with the sensor, observer, display, accuracy and motion of a plan. If two parameters

@@ -14,7 +14,7 @@
 
 namespace todbench {
 
-/// One task. `parameters` are those that vary, in the order of the file, without the base.
+/// One task. `parameters`: the varying parameters in the order of the file, without the base.
 struct SweepTask {
   std::size_t index = 0;
   std::vector<SweepParameter> parameters;
@@ -23,16 +23,16 @@ struct SweepTask {
   std::string name;        ///< "i000123-HASH": index and hash of all inputs that affect the result
 };
 
-/// Returns the number of a name that a task does not set: that of the sensor.
+/// Function that returns the value of a name that a task does not set: the value of the sensor.
 using NumberOfName = std::function<std::optional<double>(std::string_view name)>;
 
-/// All tasks of a sweep. Seeds depend on content (seed of the sweep, parameters, repeat) and not on the index, so that
-/// adding or moving a value does not change the results of other tasks. With `paired` the seeds depend on the repeat
-/// alone. Immutable, thread-safe.
+/// All tasks of a sweep. Seeds depend on the content of a task (seed of the sweep, parameters, repeat) and not on its
+/// index. Adding or moving a value therefore does not change the results of other tasks. With `paired` the seeds depend
+/// on the repeat alone. Immutable, thread-safe.
 class Sweep {
  public:
   /// Expands a sweep file. `fingerprint`: other inputs that affect results (contents of named files), part of the hash
-  /// of a task. Errors: `invalid_input` (no tasks, more than 10 million combinations, an unknown name in a condition).
+  /// of a task. Errors: `invalid_input` (no tasks, more than 10 million tasks, an unknown name in a condition).
   [[nodiscard]] static Result<Sweep> expand(SweepFile file, std::string fingerprint, const NumberOfName& number_of);
 
   [[nodiscard]] const SweepFile& file() const { return file_; }
@@ -44,8 +44,8 @@ class Sweep {
   [[nodiscard]] std::size_t refused() const { return refused_; }
   /// Returns the hash of all inputs that affect any result of this sweep.
   [[nodiscard]] const std::string& hash() const { return hash_; }
-  /// Returns the number of combinations per draw: 1; with sample_total: A, B, and A with each parameter of B, in this
-  /// order.
+  /// Returns the number of combinations per draw: 1, or the number of ranges + 2 with sample_total. The combinations
+  /// are then A, B, and A with each parameter of B, in this order.
   [[nodiscard]] std::size_t members() const { return file_.sample_total ? file_.sample.size() + 2 : 1; }
   /// Returns the keys that vary, in the order of the file.
   [[nodiscard]] std::vector<std::string> keys() const;
@@ -57,14 +57,14 @@ class Sweep {
   [[nodiscard]] std::vector<SweepParameter> parameters_of(std::size_t combination) const;
   SweepFile file_;
   std::string base_text_, hash_;
-  std::vector<std::vector<double>> sample_;  ///< per draw, or member of one, one number for each range
-  std::vector<std::size_t> combinations_;    ///< those that satisfy all conditions
+  std::vector<std::vector<double>> sample_;  ///< for each combination of a draw, one number for each range
+  std::vector<std::size_t> combinations_;    ///< combinations that satisfy all conditions
   std::size_t refused_ = 0;
 };
 
 /// Draws points in the unit cube: a Latin hypercube, or the Sobol sequence (directions of Joe and Kuo 2008) from its
-/// origin with a digital shift by the seed. Of 2^m Sobol draws, each of 2^m equal parts of every axis contains one.
-/// Returns `n` rows of `dimensions` numbers in (0, 1).
+/// origin with a digital shift by the seed. With 2^m Sobol draws, each of 2^m equal parts of every axis contains one
+/// draw. Returns `n` rows of `dimensions` numbers in (0, 1).
 [[nodiscard]] std::vector<std::vector<double>> unit_sample(SampleKind kind, std::size_t n, std::size_t dimensions,
                                                            std::uint64_t seed);
 

@@ -9,8 +9,8 @@
 
 namespace todbench {
 
-/// Mean response at one value of a parameter (for a drawn parameter at the mean of a class) over all other parameters,
-/// with the 95 % interval of the mean over the repeats.
+/// Mean response at one value of a parameter over all other parameters, with the 95 % interval of the mean over the
+/// repeats. For a drawn parameter, the value is the mean of a class.
 struct EffectLevel {
   std::string value;
   double mean = 0;
@@ -21,7 +21,7 @@ struct EffectLevel {
 struct ParameterEffect {
   std::string key;
   std::vector<EffectLevel> levels{};
-  /// For a drawn parameter: response at both limits of its range with all other parameters at their means. It is
+  /// For a drawn parameter: response at both limits of its range, with all other parameters at their means. It is
   /// computed on the plane fitted to all rows of a repeat, and averaged over the repeats. The joint least-squares fit
   /// removes the linear effects of the other parameters from the noise.
   std::vector<EffectLevel> ends{};

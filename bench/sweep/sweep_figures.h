@@ -22,7 +22,7 @@ struct ResponseGrid {
   std::string x_key, y_key;
   std::vector<double> x, y;  ///< increasing
   std::vector<std::vector<double>> mean;
-  /// Of drawn parameters: number of draws in all squares, and in the square with the fewest.
+  /// For drawn parameters: number of draws in all squares, and in the square with the fewest draws.
   std::size_t points = 0, least = 0;
 };
 /// Computes the grid of the two parameters of [grid] with the largest shares of the variance, each with two numbers or

@@ -14,7 +14,7 @@
 
 namespace todbench {
 
-/// Value of a parameter, as text of a form or of the command line: "0.05", "draft", "16.9, 1.93".
+/// Parameter and its value, as text of a form or of the command line: "0.05", "draft", "16.9, 1.93".
 struct SweepParameter {
   std::string key;
   std::string value;
@@ -48,15 +48,15 @@ struct SweepFile {
   bool paired = false;
   TaskKind kind = TaskKind::simulate;
   std::vector<SweepParameter> base;
-  std::vector<SweepAxis> grid;  ///< full factorial, the last varies fastest
-  std::vector<SweepAxis> zip;   ///< all of one length, varied together
+  std::vector<SweepAxis> grid;  ///< full factorial; the last axis varies fastest
+  std::vector<SweepAxis> zip;   ///< axes of equal length that vary together
   SampleKind sample_kind = SampleKind::latin_hypercube;
   std::vector<SweepRange> sample;
   std::size_t sample_count = 0;
   std::uint64_t sample_seed = 1;
-  /// For a Sobol sample. If true, every draw consists of two independent points A and B and, for each parameter, of A
-  /// with the value of B for this parameter. This gives total indices (Saltelli et al. 2010) with sample_count (ranges
-  /// + 2) combinations.
+  /// For a Sobol sample. If true, every draw contains two independent points A and B and, for each parameter, the point
+  /// A with this parameter taken from B. This gives total indices (Saltelli et al. 2010) with sample_count (ranges + 2)
+  /// combinations.
   bool sample_total = false;
   std::size_t repeats = 1;
   std::vector<Constraint> where;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the parameters of a task to its simulation and its result.
+// Conversion of the parameters of a task to a plan, and computation of its result.
 #pragma once
 
 #include <optional>
@@ -18,12 +18,12 @@ namespace todbench {
 struct RunnableSweep {
   Sweep sweep;
   LoadedPlan initial;                ///< base plan without parameters
-  std::vector<SweepParameter> base;  ///< those of [base], except the plan
+  std::vector<SweepParameter> base;  ///< parameters of [base], except the plan
 };
 /// Loads a sweep. Keys are those of a plan by path ("simulation.accuracy"), by the option of `todbench simulate`
 /// ("delta_t_k", "observer", "sensor"), those of a sensor ("netd_k"), and "plan" in [base], a name or a file. Without a
-/// plan there is no unit under test, and the distance of the plates is chosen for each sensor. All values of all keys
-/// are checked by this function. Errors: `invalid_input` in one sentence.
+/// plan there is no unit under test, and the distance of the plates is chosen for each sensor. This function checks all
+/// values of all keys. Errors: `invalid_input` in one sentence.
 [[nodiscard]] Result<RunnableSweep> load_sweep(const std::filesystem::path& file);
 
 /// Returns the plan of a task, including its seed. Errors: `invalid_input` for values that do not fit together.
