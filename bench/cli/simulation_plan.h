@@ -12,8 +12,8 @@
 
 namespace todbench {
 
-/// Overrides from the command line; absent ones leave the plan unchanged. A sensor also sets its microscan. A tolerance
-/// alone also sets the accuracy. Effects to skip or force are added to those of the plan.
+/// Overrides from the command line. Absent overrides leave the plan unchanged. A sensor also sets its microscan. A
+/// tolerance alone also sets the accuracy. Effects to skip or force are added to the lists of the plan.
 struct SimulationOverrides {
   std::string plan;  ///< name or file; empty: the options define the simulation
   std::optional<std::uint64_t> seed;

@@ -14,7 +14,7 @@ namespace todbench {
 struct SweepArguments {
   /// `file`: sweep file. `scheduler` for `tasks`: parallel, slurm, gridengine, snakemake or make. `engine` for
   /// `submit`: local or slurm. `options_file`: file with scheduler options of the site; empty: none. `csv`, `sqlite`,
-  /// `page`: output files of `collect`; empty: default beside the results, or no page. `response`: column whose
+  /// `page`: output files of `collect`; empty: default file next to the results, or no page. `response`: column whose
   /// dependence on the parameters is computed; empty: default of the kind of sweep.
   std::string file, scheduler = "parallel", engine = "local", options_file, csv, sqlite, page, response;
   /// `index`: index of the task to run, or of the chunk with --chunk. `jobs`: number of parallel processes. Empty: not

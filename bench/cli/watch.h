@@ -10,7 +10,7 @@
 namespace todbench {
 
 /// Shows the curve of a session folder until the session has ended or `stop` is requested; only reads the folder.
-/// Returns the exit code: that of the session's verdict, or of the error.
+/// Returns the exit code of the verdict of the session, or of the error.
 [[nodiscard]] int watch_session(Console& console, const std::filesystem::path& folder, const std::stop_token& stop);
 
 }  // namespace todbench

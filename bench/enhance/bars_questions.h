@@ -32,7 +32,7 @@ struct BarsRequest {
 /// One decision between two windows of the same place, contrast and set-up. The windows come from two frames if the
 /// session keeps more than one.
 struct BarsQuestion {
-  std::size_t target_picture = 0, other_picture = 0;  ///< in KeptBars::pictures
+  std::size_t target_picture = 0, other_picture = 0;  ///< indices in KeptBars::pictures
   bool target_left = false;
 };
 

@@ -39,11 +39,11 @@ struct BlindPatch {
 /// Answer to a patch.
 struct BlindAnswer {
   std::size_t source = 0;
-  Trial trial;  ///< with the answer of the person
+  Trial trial;  ///< trial with the answer of the person
   ShownPatch shown{};
 };
 
-/// Result of each source, and its acuity as a ratio to that of the first source.
+/// Result of each source, and the ratio of its acuity to the acuity of the first source.
 struct BlindResult {
   std::vector<std::string> sources;
   std::vector<HumanRecord> records;  ///< one per source

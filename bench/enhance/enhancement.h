@@ -45,14 +45,14 @@ struct PackageResult {
   double frame_ms = 0;              ///< median processing time of its stages per frame
   std::size_t frames = 0, clipped_pixels = 0;
   int samples_per_pixel = 1;             ///< samples per pixel and axis of the judged pictures
-  std::vector<JudgedContrast> judged;    ///< by set-up and contrast; empty: no stages
+  std::vector<JudgedContrast> judged;    ///< gain and noise by set-up and contrast; empty: no stages
   cv::Mat1w picture;                     ///< picture of one frame; the same frame for all results
   std::optional<Error> error;            ///< reason of an early end or a failed measurement; the trials so far are kept
   std::vector<std::string> error_lines;  ///< standard error of its modules, the first hundred lines
 };
 /// Results of all packages.
 struct Enhancement {
-  std::vector<PackageResult> results;  ///< without a package first, then the packages in their order
+  std::vector<PackageResult> results;  ///< first without a package, then the packages in their order
   int settle_frames = 0;               ///< exposures discarded after every change, the same for all
   std::string camera;                  ///< source of the frames
   double frame_rate_hz = 0;            ///< 0: unknown

@@ -32,7 +32,7 @@ class OpenEnds {
   /// Creates no observers if `observer` has no eye.
   explicit OpenEnds(const TemplateObserverSpec& observer);
   /// Lets both observers judge the patch of a trial and appends their answers to `into`. They use the same random
-  /// numbers as the observer itself. `options` are those of the run.
+  /// numbers as the observer itself. `options`: options of the run.
   void judge(const Trial& trial, const Patch& patch, const MeasurementOptions& options, EndTrials& into);
 
  private:

@@ -26,7 +26,7 @@ enum class Adding {
   added,
   known,         ///< same manifest at the same place, or a copy of a session that still exists
   moved,         ///< same manifest at another place; the session no longer exists at the old place
-  judged_again,  ///< not added: its frames are those of another session
+  judged_again,  ///< not added, because its frames come from another session
 };
 
 /// Index of sessions. Session folders do not contain events. The file FILE.events.csv next to the index therefore also

@@ -29,12 +29,13 @@ struct AppliedRow {
   bool from_run = false;            ///< added by the run, not stated in the plan
 };
 
-/// Intervals of the ratio of the measured acuity to that of the twin. Rows common to both cancel.
+/// Intervals of the ratio of the measured acuity to the acuity of the twin. Rows common to both cancel.
 struct ExpandedRatio {
   Interval ci95, ci90;
 };
 
-/// Uncertainty at one contrast. Each u is the standard uncertainty of ln acuity, which equals that of ln S75.
+/// Uncertainty at one contrast. Each u is the standard uncertainty of ln acuity, which equals the standard uncertainty
+/// of ln S75.
 struct PointUncertainty {
   double set_delta_t_k = 0;
   double contrast_slope = 1;  ///< d ln acuity / d ln contrast

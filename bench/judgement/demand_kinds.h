@@ -20,7 +20,7 @@ struct DemandKindRow {
   /// Returns all demands of this kind; empty if there are none.
   std::vector<Demand> (*judge)(const DemandKindRow& row, const JudgementInput& evidence);
   std::string (*in_words)(const DemandKindRow& row, const Demand& demand);
-  const Quantity* quantity = nullptr;  ///< for a limit on a physical measure
+  const Quantity* quantity = nullptr;  ///< quantity of a limit on a physical measure; null for other limits
 };
 
 /// Returns all kinds in the order of judgement and presentation.

@@ -43,7 +43,7 @@ struct DemandKind {
   static const DemandKind acuity;  ///< 75 % acuity at a contrast, [[limits.acuity]]
   /// Requires a threshold with both limits of its interval at every contrast that has no limit on acuity.
   static const DemandKind identified;
-  static const DemandKind equivalence;       ///< to the simulated twin, [limits] equivalence_margin_percent
+  static const DemandKind equivalence;       ///< equivalence to the simulated twin, [limits] equivalence_margin_percent
   static const DemandKind scene_dependence;  ///< dependence of the response on a hot bar, `todbench scene-dependence`
   auto operator<=>(const DemandKind&) const = default;
 };
@@ -57,7 +57,7 @@ inline constexpr DemandKind DemandKind::acuity{"acuity"}, DemandKind::identified
 /// Ratio of camera and twin that an equivalence demand uses.
 enum class RatioKind {
   unpaired,  ///< ratio of the two thresholds
-  paired,    ///< from the phases that both observed (tod/comparison/paired_ratio.h)
+  paired,    ///< ratio from the phases that both observed (tod/comparison/paired_ratio.h)
 };
 inline constexpr std::array all_ratio_kinds{RatioKind::unpaired, RatioKind::paired};
 /// Returns the name of the enumerator.
@@ -120,7 +120,7 @@ struct Verdict {
 
 /// Physical measure of the session, in its unit.
 struct MeasuredQuantity {
-  std::string measure;  ///< as in measures.json
+  std::string measure;  ///< name of the measure in measures.json
   std::optional<double> value{};
   Interval ci95{};
 };
@@ -158,7 +158,7 @@ struct JudgementInput {
 /// Returns the threshold of a fit that identifies it.
 [[nodiscard]] std::optional<double> identified_threshold(const PsychometricFit& fit);
 
-/// Converts decisions; conditional ones become inconclusive.
+/// Converts a decision; a conditional decision becomes inconclusive.
 [[nodiscard]] VerdictKind kind_of(ConformityDecision decision);
 /// Converts a decision to the terms of a rule.
 [[nodiscard]] ConformityDecision conformity_of(VerdictKind kind);

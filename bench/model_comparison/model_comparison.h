@@ -22,7 +22,7 @@ struct ComparedModel {
   std::string name, reference, sha256;
   SensorSpec sensor{};           ///< with its modules
   DescribedObserver observer{};  ///< with its module
-  EnhancementPackage package{};  ///< without stages: no package
+  EnhancementPackage package{};  ///< package; without stages if there is no package
   std::vector<std::string> provenance{};
 };
 /// Reads a model by name or file. A file with [[stage]] is a package, one with blur_sigma_samples an observer, any

@@ -31,7 +31,7 @@ struct DynamicAcuity {
   double smear_px = 0;                    ///< speed times time constant
   double exposure_px = 0;                 ///< speed times exposure
   double lag_px = 0;                      ///< mean lag, removed before judging
-  std::vector<DynamicPoint> points;       ///< by SequenceObserver
+  std::vector<DynamicPoint> points;       ///< one point for each SequenceObserver
 };
 
 /// Returns the entry of a speed with its values in pixels of this sensor. The points are empty.

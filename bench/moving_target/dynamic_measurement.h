@@ -44,7 +44,7 @@ struct DynamicMeasurement {
   double residual_px = 0;  ///< rms deviation of the positions in moving passes from the motion of the stage
 };
 
-/// Callbacks of a measurement, including those of measure_moving().
+/// Callbacks of a measurement, including the callbacks of measure_moving().
 struct DynamicListener {
   MovingListener moving{};
   std::function<Result<void>(const OpenedBench&)> on_open{};  ///< called before the first measurement

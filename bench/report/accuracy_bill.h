@@ -53,8 +53,8 @@ struct BillInput {
 /// change of the target begins. The first presentation of a set-up or a contrast also locates the plate and measures
 /// the contrast. The time for this is the excess over the median of the other presentations at the same contrast. If
 /// there are no others, it is the excess over the forecast; without a forecast, the location has no time. If the
-/// presentations have no times, all time except that of the physical measures counts as computing. The least time for
-/// the verdict keeps the set-ups. It assumes that the half-width from the trials falls with the square root of the
+/// presentations have no times, all time except the time of the physical measures counts as computing. The least time
+/// for the verdict keeps the set-ups. It assumes that the half-width from the trials falls with the square root of the
 /// number of presentations, and keeps at least one presentation for each set-up and, for graded answers, at least
 /// `least_graded_presentations`.
 [[nodiscard]] AccuracyBill accuracy_bill(const BillInput& input);

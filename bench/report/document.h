@@ -16,7 +16,7 @@ namespace todbench {
 enum class Meaning {
   plain,
   strong,
-  reason,    ///< in brackets: reason for an absent value
+  reason,    ///< reason for an absent value, shown in brackets
   unbroken,  ///< kept on one line if there is room: a number with its interval
   good,
   bad,

@@ -45,7 +45,7 @@ namespace todbench {
 /// Returns the tables of bars and spots in the layout of an acceptance document: frequency, contrast of each polarity,
 /// offset, half difference of each axis, best phase. `who` names the side in the captions.
 [[nodiscard]] std::vector<Table> mrtd_tables(const MrtdMeasure& mrtd, const std::string& who);
-/// Returns the maps of the camera next to those of the twin.
+/// Returns the maps of the camera next to the maps of the twin.
 [[nodiscard]] std::optional<FigurePairs> pixel_figures(const SessionMeasures& measures, bool camera);
 
 }  // namespace todbench

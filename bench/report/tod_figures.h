@@ -47,7 +47,7 @@ struct DrawnLimit {
 };
 
 /// Returns the plot of acuity 1/S75 (linear, x) against contrast (logarithmic, y), the TOD convention. 95 % intervals
-/// are horizontal. Contrasts are drawn by magnitude, negative ones as a separate series.
+/// are horizontal. Contrasts are drawn by magnitude; negative contrasts are a separate series.
 [[nodiscard]] Plot tod_figure(const NamedCurve& first, const NamedCurve& second, std::span<const DrawnLimit> limits);
 /// Returns the same figure with a linear (the convention) or logarithmic acuity axis.
 [[nodiscard]] Plot with_acuity_axis(Plot tod_figure, AxisScale scale);

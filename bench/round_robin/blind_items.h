@@ -35,7 +35,7 @@ inline constexpr std::string_view blind_quantity = "s75_mrad";
 
 /// Written comparison.
 struct BlindComparison {
-  std::vector<ReferenceTruth> truths;  ///< as sealed
+  std::vector<ReferenceTruth> truths;  ///< true values as sealed
   std::string sealed_sha256;           ///< SHA-256 of the sealed file, which every protocol states
 };
 /// Writes into an empty folder: sealed.json with the true values, which the coordinator keeps, and for each laboratory
@@ -46,7 +46,7 @@ struct BlindComparison {
                                                              const BlindOptions& options, std::stop_token stop);
 
 /// Judges the recordings of one laboratory with an observer that is given the positions of the triangles, and fits a
-/// Weibull function to its answers. The standard uncertainty is that of the 95 % interval of the fit. Errors:
+/// Weibull function to its answers. The standard uncertainty follows from the 95 % interval of the fit. Errors:
 /// `invalid_input` (no such folder, damaged files), `not_identifiable` (an item without a threshold or without both
 /// limits of its interval), `interrupted`.
 [[nodiscard]] Result<std::vector<SubmittedResult>> judged_items(const std::filesystem::path& folder,

@@ -75,7 +75,7 @@ struct LaboratorySummary {
 struct OutlyingResult {
   std::string laboratory, item, quantity;  ///< empty item: the laboratory over all its items
   double zeta = 0;                         ///< zeta against the results that were not yet excluded when it was found
-  double p = 0;                            ///< probability of such a deviation of any laboratory by chance
+  double p = 0;                            ///< probability that any laboratory has such a deviation by chance
 };
 
 /// Evaluation of a comparison.

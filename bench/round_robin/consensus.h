@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Result of one laboratory for one item. The unit is that of the item.
+/// Result of one laboratory for one item. Its unit is the unit of the item.
 struct LaboratoryValue {
   std::string laboratory;
   double value = 0;

@@ -58,8 +58,8 @@ struct SceneDependence {
 /// Options of the measurement.
 struct SceneDependenceOptions {
   int cycles = 6;                ///< 3 or more; each is out, in, in, out, so that a linear drift cancels
-  int frames = 16;               ///< averaged per position of the bar
-  int settle_frames = 0;         ///< discarded after the bar has moved, in addition to those of the plan
+  int frames = 16;               ///< frames averaged per position of the bar
+  int settle_frames = 0;         ///< frames discarded after the bar has moved, in addition to the number in the plan
   double tolerance_percent = 2;  ///< largest allowed change of the response
   /// Function called before the first frame, when all parts are ready. An error ends the run. Optional.
   std::function<Result<void>(const SourceInfo& camera, const Target& target)> on_begin{};

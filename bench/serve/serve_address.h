@@ -11,7 +11,7 @@ namespace todbench {
 
 /// Address and port.
 struct ServeAddress {
-  std::string host;  ///< address of this computer: "127.0.0.1", "::1", "localhost", or that of a network card
+  std::string host;  ///< address of this computer: "127.0.0.1", "::1", "localhost", or the address of a network card
   int port = 0;      ///< 0: any free port
 };
 

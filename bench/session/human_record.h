@@ -29,8 +29,8 @@ struct ShownPatch {
   std::optional<double> noise_k{};  ///< temporal noise of a sample, as given to the model; empty in older files
 };
 
-/// Answers and the curve fitted to them. The trials have the same format as those of the model, with the person's
-/// answers and scores of 0.
+/// Answers and the curve fitted to them. The trials have the same format as the trials of the model, with the answers
+/// of the person and scores of 0.
 struct HumanRecord {
   std::vector<Trial> trials;
   TodCurve curve;

@@ -36,8 +36,8 @@ struct SessionCheck {
 
 /// Sessions that a reader accepts. Code that presents a session must show its `accepted_changes` and `cut_off`.
 struct Opening {
-  bool accept_changed = false;  ///< also sessions with files that the run did not write in this form
-  bool accept_cut_off = false;  ///< also runs that were cut off, which have no manifest
+  bool accept_changed = false;  ///< accepts sessions with files that the run did not write in this form
+  bool accept_cut_off = false;  ///< accepts runs that were cut off, which have no manifest
 };
 
 /// Checks a session with check_session() and reads it with read_session(). Errors: those of both, and `invalid_input`

@@ -66,8 +66,9 @@ struct CameraOpticsRecord {
   double netd_k = 0, row_noise_k = 0, column_noise_k = 0, fixed_pattern_k = 0, noise_correlation = 0;
   std::optional<double> halo_share{}, halo_share_se{}, halo_sigma_px{};  ///< beyond the halo of the twin
   bool refused = false;                                                  ///< chi2 exceeds its limit
-  bool surrogate_taken = false;                       ///< the camera's fit uses the function of the surrogate
-  std::map<std::string, double> contrast_response{};  ///< by plate; contrasts were divided by it
+  bool surrogate_taken = false;  ///< the camera's fit uses the function of the surrogate
+  /// Response of the contrast estimator by plate. Contrasts were divided by it.
+  std::map<std::string, double> contrast_response{};
   bool operator==(const CameraOpticsRecord&) const = default;
 };
 
@@ -94,7 +95,7 @@ struct OriginRecord {
 
 /// Bench times that were forecast from the plan before the run.
 struct TimeForecast {
-  double total_s = 0;                     ///< without computing
+  double total_s = 0;                     ///< total without computing
   std::map<std::string, double> parts_s;  ///< by part of the bill (bench/report/accuracy_bill.h)
   bool operator==(const TimeForecast&) const = default;
 };
@@ -121,7 +122,7 @@ struct Provenance {
   std::optional<CameraOpticsRecord> camera_optics{};
   /// The last self-test of this program on this computer; empty: none.
   std::optional<SelftestRecord> selftest{};
-  /// Present if the frames are those of another session.
+  /// Origin of the frames; present if they come from another session.
   std::optional<OriginRecord> origin{};
   /// Limits of the acuity, and thresholds of an operator at the display; empty: no observer with an eye.
   std::optional<DisplayRecord> at_display{};

@@ -20,7 +20,7 @@ inline constexpr std::array signing_programs{SigningProgram::minisign, SigningPr
 /// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(SigningProgram program);
 
-/// Content of signature.json. The signatures of manifest.json and of signature.json stand beside them (.sig or
+/// Content of signature.json. The signatures of manifest.json and signature.json are files next to them (.sig or
 /// .minisig).
 struct SessionSignature {
   SigningProgram with = SigningProgram::openssl;
@@ -80,7 +80,7 @@ struct SignatureCheck {
 [[nodiscard]] Result<void> keep_revision(const std::filesystem::path& folder, const ReportRevision& revision,
                                          const std::vector<std::string>& pages, const std::filesystem::path& secret_key,
                                          const std::stop_token& stop = {});
-/// Succeeds if the secret key is the one that signed the session. Errors: those of sign_session().
+/// Succeeds if the session was signed with this secret key. Errors: those of sign_session().
 [[nodiscard]] Result<void> require_key_of_session(const std::filesystem::path& folder,
                                                   const std::filesystem::path& secret_key,
                                                   const std::stop_token& stop = {});

@@ -71,7 +71,7 @@ struct SetCriterion {
 /// interpolated linearly in the logarithm of the position. Empty if the crossing is outside the positions.
 struct Crossing75 {
   std::optional<double> at;
-  bool beyond_last = false;  ///< at least 75 % everywhere
+  bool beyond_last = false;  ///< the proportion is at least 75 % at every position
 };
 /// Returns the crossing of these proportions.
 [[nodiscard]] Crossing75 crossing_of_75_percent(const std::vector<double>& at, const std::vector<double>& proportions);

@@ -48,7 +48,7 @@ struct MrtdStudy {
 };
 
 /// Runs the study. Contrasts are stated at the bars: the contrast that the camera needs, divided by the transmittance.
-/// Errors: `invalid_input` (a range beyond the table of the air, or at which the air transmits nothing), those of
+/// Errors: `invalid_input` (a range beyond the table of the air, or with a transmittance of 0), those of
 /// virtual_mrtd().
 ///
 /// A threshold beyond Nyquist is not an MRTD, because no phase shows four bars there. A threshold by the criterion

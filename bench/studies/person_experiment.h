@@ -20,8 +20,9 @@ namespace todbench {
 /// Task of the person.
 enum class PersonTask {
   identify,  ///< question about one picture: which target of the set is it?
-  bars  ///< by BarCriterion: which of two pictures has the four bars, or: are the bars of one picture resolved (yes or
-        ///< no)?
+  /// Question by BarCriterion: which of two pictures has the four bars, or: are the bars of one picture resolved (yes
+  /// or no)?
+  bars
 };
 /// Returns the name of the task, "identify" or "mrtd".
 [[nodiscard]] std::string_view to_string(PersonTask task);

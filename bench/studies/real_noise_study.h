@@ -65,7 +65,7 @@ struct SizeEstimate {
 struct NoiseAcuity {
   double contrast_over_noise = 0;
   SizeEstimate real, white;
-  double acuity_ratio = 0;  ///< with real noise / with white noise of the same standard deviation
+  double acuity_ratio = 0;  ///< acuity with real noise / acuity with white noise of the same standard deviation
   Interval ratio_ci95;      ///< Student's t with blocks - 1 degrees of freedom
   /// Standard deviation of the noise in the differences of the templates, relative to white noise of the same strength:
   /// the part that affects the observer's decisions. Below 1 the noise has less effect than white noise of the same

@@ -75,7 +75,7 @@ struct ScenePictures {
   double grey_low_k = 0, grey_high_k = 1;  ///< black and white of every picture, above the background
   double background_k = 300;               ///< camera reading of the background: scene, air and one conversion
   double transmittance = 1;
-  std::optional<TargetSignature> signature;  ///< before the air
+  std::optional<TargetSignature> signature;  ///< signature before the air
   double apparent_dt_k = 0;                  ///< contrast behind the air, the input of the effect planner
   EffectPlan effects;
   std::vector<AirDecision> air;

@@ -57,8 +57,9 @@ class Sweep {
   [[nodiscard]] std::vector<SweepParameter> parameters_of(std::size_t combination) const;
   SweepFile file_;
   std::string base_text_, hash_;
-  std::vector<std::vector<double>> sample_;  ///< for each combination of a draw, one number for each range
-  std::vector<std::size_t> combinations_;    ///< combinations that satisfy all conditions
+  /// One row for each combination of each draw, with one number for each range.
+  std::vector<std::vector<double>> sample_;
+  std::vector<std::size_t> combinations_;  ///< combinations that satisfy all conditions
   std::size_t refused_ = 0;
 };
 

@@ -17,7 +17,7 @@
 
 namespace todbench {
 
-/// Camera settings that the window shows beside a live picture.
+/// Camera settings that the window shows next to a live picture.
 enum class CameraControl { frame_rate, gain, range, exposure };
 inline constexpr std::array all_camera_controls{CameraControl::frame_rate, CameraControl::gain, CameraControl::range,
                                                 CameraControl::exposure};

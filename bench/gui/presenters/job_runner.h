@@ -14,9 +14,9 @@
 
 namespace todbench {
 
-/// Thread for jobs. A started job stops the running one, discards the waiting ones, and starts when the running one has
-/// ended. A queued job starts after all others. Methods are called from the thread that owns the object and return
-/// immediately; jobs run on the thread of the runner.
+/// Thread for jobs. start() stops the running job, discards waiting jobs, and starts the new job when the running job
+/// has ended. queue() adds a job that starts after all others. Methods are called from the thread that owns the object
+/// and return immediately; jobs run on the thread of the runner.
 class JobRunner final : public QObject {
   Q_OBJECT
 
@@ -30,9 +30,9 @@ class JobRunner final : public QObject {
   void start(Job job);
   /// Adds a job after the others.
   void queue(Job job);
-  /// Result of stop(): jobs that had not started were discarded, or there were none.
+  /// Result of stop(): whether it discarded jobs that had not started.
   enum class Waiting { none, dropped };
-  /// Requests a stop of the running job and discards the waiting ones.
+  /// Requests a stop of the running job and discards the waiting jobs.
   Waiting stop();
   /// Stops and waits for the end of the running job; later jobs do not run.
   void shut_down();

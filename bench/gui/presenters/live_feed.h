@@ -18,7 +18,7 @@ namespace todbench {
 struct FrameCounters {
   std::uint64_t good = 0, lost = 0;
   std::map<std::string, std::uint64_t> rejected;  ///< by reason
-  double rate_hz = 0;                             ///< over the last second; 0: unknown yet
+  double rate_hz = 0;                             ///< frame rate over the last second; 0: not yet known
 };
 
 /// Latest frame with the counters.

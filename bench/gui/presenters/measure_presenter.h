@@ -85,7 +85,7 @@ class MeasurePresenter final : public QObject {
     return replayed_ && same_.value_or(false) ? *replayed_ : folder_;
   }
 
-  /// Returns the plan of the session that was replayed last. Empty if the frames are those of a run.
+  /// Returns the plan of the session that was replayed last. Empty if the last run used the camera.
   [[nodiscard]] std::optional<Plan> replayed_plan() const {
     return replayed_ && outcome_ ? std::optional(plan_) : std::nullopt;
   }
@@ -98,7 +98,7 @@ class MeasurePresenter final : public QObject {
   void set_predicted(std::optional<TodCurve> predicted) { predicted_ = std::move(predicted); }
   /// Returns the result of the last run; empty before its end.
   [[nodiscard]] const std::optional<ExperimentOutcome>& outcome() const { return outcome_; }
-  /// Returns, after a replay, whether trials and fits equal those of the session, byte for byte.
+  /// Returns, after a replay, whether trials and fits equal the trials and fits of the session byte for byte.
   [[nodiscard]] std::optional<bool> same_as_recorded() const { return same_; }
   /// Returns the trials of the camera.
   [[nodiscard]] const std::vector<JudgedTrial>& trials() const { return trials_; }
@@ -157,7 +157,7 @@ class MeasurePresenter final : public QObject {
   std::size_t done_ = 0, planned_ = 0, done_at_start_ = 0;
   std::size_t presented_ = 0;  ///< presentations in the last part that counts them
   QElapsedTimer in_phase_, since_fit_, since_begin_;
-  std::size_t requests_ = 0, planned_requests_ = 0;  ///< to the operator; 0 planned: unknown
+  std::size_t requests_ = 0, planned_requests_ = 0;  ///< requests to the operator; 0 planned: unknown
   std::filesystem::path folder_;
   std::vector<JudgedTrial> trials_;
   std::vector<Trial> twin_trials_;

@@ -18,7 +18,7 @@ class PlanForm {
   explicit PlanForm(const Plan& plan);
 
   [[nodiscard]] const std::vector<PlanField>& fields() const { return fields_; }
-  /// Returns the displayed text of line `i`: the last entered one, or that of the plan.
+  /// Returns the displayed text of line `i`: the last entered text, or the value of the plan.
   [[nodiscard]] QString text(std::size_t i) const;
   /// Returns the error of line `i`; empty: it is valid.
   [[nodiscard]] QString problem(std::size_t i) const { return lines_[i].problem; }

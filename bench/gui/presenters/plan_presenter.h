@@ -105,7 +105,7 @@ class PlanPresenter final : public QObject {
   QString misfit_, trouble_;
   std::optional<Plan> expected_of_, prices_of_;
   std::vector<Plan> undone_to_, redone_to_;  ///< the last element is the next one
-  Plan last_;                                ///< before the present change
+  Plan last_;                                ///< plan before the current change
   Change change_ = Change::single, last_change_ = Change::single;
   EffectPlanner planner_;  // of both jobs
   JobRunner forecasts_, jobs_;

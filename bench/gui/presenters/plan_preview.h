@@ -46,8 +46,8 @@ struct PlanForecast {
   std::string problem;                 ///< reason why the tolerance cannot be met; empty: it can be met
 };
 
-/// Computes the predictions. `known`: thresholds that replace those of the planner; may be empty. `planner` caches
-/// decisions that do not depend on tolerance and trials. Errors: `interrupted`.
+/// Computes the predictions. `known`: thresholds that replace the estimates of the planner; may be empty. `planner`
+/// caches decisions that do not depend on tolerance and trials. Errors: `interrupted`.
 [[nodiscard]] Result<PlanForecast> forecast(const LoadedPlan& loaded, const std::vector<ExpectedThreshold>& known,
                                             EffectPlanner& planner, std::stop_token stop = {});
 
@@ -61,7 +61,7 @@ struct PlannedContrast {
 /// Counts, time and uncertainties of a plan.
 struct PlanPreview {
   std::uint64_t presentations = 0, trials = 0;  ///< numbers for the camera; expected numbers for an adaptive schedule
-  double bench_s = 0;                           ///< as bench_time() (bench/forecast/bench_time.h)
+  double bench_s = 0;                           ///< bench time by bench_time() (bench/forecast/bench_time.h)
   std::optional<double> twin_s;
   std::vector<PlannedContrast> contrasts;
   std::vector<std::pair<double, double>> by_frames;  ///< bench time and uncertainty of PlanForecast::by_frames

@@ -109,7 +109,7 @@ struct Exported {
 /// path; `invalid_input` if files of the session were changed.
 [[nodiscard]] Result<Exported> export_reports(const OpenedSession& opened,
                                               const std::optional<std::filesystem::path>& order = std::nullopt);
-/// Returns the sessions directly in a folder, newest first; unreadable ones are left out.
+/// Returns the sessions directly in a folder, newest first. Unreadable sessions are left out.
 [[nodiscard]] std::vector<SessionEntry> sessions_below(const std::filesystem::path& folder);
 
 }  // namespace todbench

@@ -24,10 +24,10 @@ void wrap_words(QTableWidget& table);
 /// Sets column widths so that the headings and the texts `longest` fit, one text per column from the first. The last
 /// column fills the remaining width. Returns the table width that fits these columns exactly.
 int column_widths(QTableWidget& table, const QStringList& longest);
-/// Sets the height to that of the rows, at least one and at most `most_rows` rows.
+/// Sets the height of the table so that all rows fit, at least one and at most `most_rows`.
 void fit_height(QTableWidget& table, int most_rows);
-/// Sets the height to that of the rows with wrapped words, now and after every change, between `least` and `most`
-/// pixels.
+/// Sets the height of the table so that the rows with wrapped words fit, now and after every change, between `least`
+/// and `most` pixels.
 void fit_rows(QTableWidget& table, int least, int most);
 /// Replaces the rows of a table.
 void fill_table(QTableWidget& table, const QList<QStringList>& rows);

@@ -42,7 +42,7 @@ class LimitsPanel final : public QWidget {
   QLabel* text_;
   QPushButton* button_;        ///< stops the calculation, or starts it again after it was stopped
   std::optional<Plan> asked_;  ///< the plan of the text or of the running calculation
-  bool stopped_ = false;       ///< by the user
+  bool stopped_ = false;       ///< the user stopped the calculation
 };
 
 }  // namespace todbench

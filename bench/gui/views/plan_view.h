@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plan view: the form and its TOML, with the predicted cost beside them.
+// Plan view: the form and its TOML, and the predicted cost next to them.
 #pragma once
 
 #include <QTimer>
@@ -58,7 +58,7 @@ class PlanView final : public QWidget {
   QTabWidget* tabs_;
   QPlainTextEdit* toml_;
   QLabel* toml_state_;
-  QTimer toml_delay_;         ///< after the last key
+  QTimer toml_delay_;         ///< delay after the last key stroke
   bool toml_edited_ = false;  ///< the text is the user's; it is not replaced while it is edited
   QString toml_wrong_;        ///< reason why the text is not in use
   QLabel* problem_;
