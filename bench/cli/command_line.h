@@ -21,7 +21,7 @@ namespace todbench {
 struct CommandExample {
   std::string line, effect;
 };
-/// Returns the examples of a command, "fit" or "history add".
+/// Returns the examples of a command. `command`: for example "fit" or "history add".
 [[nodiscard]] std::vector<CommandExample> examples_of(std::string_view command);
 /// Adds the examples to the help of every command.
 void add_examples(CLI::App& app);

@@ -74,7 +74,7 @@ struct RangeOptions {
   /// Returns the curves and the sensor that the models use.
   [[nodiscard]] Result<RangeSources> sources(std::vector<TodThreshold> thresholds,
                                              const std::optional<SensorSpec>& sensor) const;
-  /// Writes the requested figure and page. `said`: sentences about the results, for the page.
+  /// Writes the requested figure and page. `said`: sentences about the results that the page shows.
   [[nodiscard]] Result<void> write(const std::vector<ModelRange>& models, const RangeQuestion& question,
                                    const std::vector<std::string>& said, const Json& grids) const;
 

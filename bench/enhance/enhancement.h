@@ -44,10 +44,10 @@ struct PackageResult {
   std::vector<PairedRatio> ratios;  ///< ratios to the result without a package; empty for that result itself
   double frame_ms = 0;              ///< median processing time of its stages per frame
   std::size_t frames = 0, clipped_pixels = 0;
-  int samples_per_pixel = 1;             ///< samples per pixel and axis of the judged pictures
-  std::vector<JudgedContrast> judged;    ///< gain and noise by set-up and contrast; empty: no stages
-  cv::Mat1w picture;                     ///< picture of one frame; the same frame for all results
-  std::optional<Error> error;            ///< reason of an early end or a failed measurement; the trials so far are kept
+  int samples_per_pixel = 1;           ///< samples per pixel and axis of the judged pictures
+  std::vector<JudgedContrast> judged;  ///< gain and noise by set-up and contrast; empty: no stages
+  cv::Mat1w picture;                   ///< picture of one frame; the same frame for all results
+  std::optional<Error> error;          ///< reason for an early end or a failed measurement; the trials so far are kept
   std::vector<std::string> error_lines;  ///< standard error of its modules, the first hundred lines
 };
 /// Results of all packages.

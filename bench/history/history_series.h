@@ -28,7 +28,7 @@ struct HistorySeries {
   std::vector<EarlierValue> earlier{};
 };
 
-/// Treatment of measures that have only earlier values.
+/// Treatment of measures that have only earlier values and therefore no chart.
 enum class WithoutChart { left_out, listed };
 
 /// Returns the series of a serial number and a measure; an empty text selects all. Errors: those of the index.

@@ -34,10 +34,10 @@ struct Conformity {
   /// Tolerance reduced by the guard band on each side. A value on a limit is inside.
   ToleranceLimits acceptance{};
   bool acceptance_zone_is_empty = false;  ///< no value can pass
-  /// Probability that the true value lies inside the tolerance, with little prior knowledge (JCGM 106:2012, 7). For a
-  /// fail it is the risk of a wrong rejection.
+  /// Probability that the true value lies inside the tolerance, with little prior knowledge (JCGM 106:2012, 7). If the
+  /// decision is a fail, this is the risk of a wrong rejection.
   double p_conformity = 0;
-  double p_nonconformity = 0;  ///< 1 - p_conformity; for a pass, the risk of a wrong acceptance
+  double p_nonconformity = 0;  ///< 1 - p_conformity; if the decision is a pass, the risk of a wrong acceptance
 };
 
 /// Decides by `rule`. Errors: `invalid_input` (no limit, limits in the wrong order, a non-finite number, u or degrees
@@ -61,8 +61,8 @@ struct Fleet {
 /// freedom, the error over u follows Student's t.
 struct GlobalRisks {
   double p_conforming = 0, p_accepted = 0;
-  double consumer_risk = 0;                ///< probability: accepted and outside the tolerance
-  double producer_risk = 0;                ///< probability: rejected and inside the tolerance
+  double consumer_risk = 0;                ///< probability that a unit is accepted and outside the tolerance
+  double producer_risk = 0;                ///< probability that a unit is rejected and inside the tolerance
   double p_nonconforming_if_accepted = 0;  ///< 0 if no unit is accepted
 };
 

@@ -61,7 +61,7 @@ struct FleetForecast {
   double p_good = 0;         ///< probability that a unit is inside the tolerance
   double good_rejected = 0;  ///< share of the conforming units that are not accepted
   double good_rejected_most = 0;
-  double bad_accepted = 0;  ///< share of all units: accepted and outside the tolerance
+  double bad_accepted = 0;  ///< share of all units that are accepted and outside the tolerance
   double bad_accepted_most = 0;
 };
 /// Forecasts for units measured with standard uncertainty `u` on the scale of the prior. Errors: global_risks().

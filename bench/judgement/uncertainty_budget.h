@@ -53,7 +53,7 @@ inline constexpr int session_budget_draws = 200000;
 
 /// Reads the file of `todbench budget` (docs/method/conformity.md). Errors: `invalid_input` with file and line.
 [[nodiscard]] Result<UncertaintyBudget> read_budget(const std::filesystem::path& file);
-/// Parses text already read; `name` is its name in messages.
+/// Parses the text of such a file. `name`: name of the text in messages.
 [[nodiscard]] Result<UncertaintyBudget> parse_budget(std::string_view text, const std::string& name);
 
 }  // namespace todbench

@@ -70,7 +70,8 @@ struct DemandFleet {
   int units = 0;                                ///< number of units of the fleet prior
   double p_conformity = 0;                      ///< probability that the demand is met, given the result and the fleet
   double consumer_risk = 0, producer_risk = 0;  ///< global risks of this rule over the fleet
-  double consumer_risk_most = 0, producer_risk_most = 0;  ///< upper bounds for a fleet known from so few units, 95 %
+  /// Largest risks at the estimated standard deviation of the fleet and at both limits of its 95 % interval.
+  double consumer_risk_most = 0, producer_risk_most = 0;
 };
 
 /// Demand with its result. Unit and words follow from the kind (demand_kinds.h).
@@ -108,11 +109,11 @@ struct Demand {
 /// Content of verdict.json. Made once by judge(); other code only presents it.
 struct Verdict {
   VerdictKind decision = VerdictKind::inconclusive;
-  std::string reason{};  ///< reason of the decision, a sentence
+  std::string reason{};  ///< reason for the decision, a sentence
   ConformityRule rule = ConformityRule::guarded_acceptance_and_rejection;
   std::string rule_in_words{};
   std::vector<Demand> demands{};
-  std::optional<std::string> ended_early{};  ///< reason of an early end of the run
+  std::optional<std::string> ended_early{};  ///< reason for an early end of the run
   JudgedWhen judged = JudgedWhen::at_end_of_run;
   /// Rows missing from the budget of the plan; empty: the plan has no budget.
   std::optional<std::vector<std::string>> not_stated{};
@@ -169,8 +170,8 @@ struct JudgementInput {
 [[nodiscard]] int exit_code(VerdictKind kind);
 /// Returns 0 if the threshold is identified and fit for a decision, otherwise 3.
 [[nodiscard]] int exit_code(const PsychometricFit& fit, const Adequacy& adequacy = {});
-/// Returns 2 for invalid_input, 4 not_found, 5 disconnected, integrity, timeout, 6 calibration, 7 io (a full disk) and
-/// internal, 130 interrupted.
+/// Returns the exit code of an error: 2 for `invalid_input`, 4 for `not_found`, 5 for `disconnected`, `integrity` and
+/// `timeout`, 6 for `calibration`, 7 for `io` (for example a full disk) and `internal`, 130 for `interrupted`.
 [[nodiscard]] int exit_code(ErrorCode code);
 
 }  // namespace todbench

@@ -25,8 +25,9 @@ struct ComparedModel {
   EnhancementPackage package{};  ///< package; without stages if there is no package
   std::vector<std::string> provenance{};
 };
-/// Reads a model by name or file. A file with [[stage]] is a package, one with blur_sigma_samples an observer, any
-/// other a sensor; "none" is a package without stages. Errors: `invalid_input` as the readers of each kind.
+/// Reads a model by name or file. A file with [[stage]] is a package, a file with blur_sigma_samples is an observer,
+/// and any other file is a sensor. "none" is a package without stages. Errors: `invalid_input`, as from the readers of
+/// each kind.
 [[nodiscard]] Result<ComparedModel> read_compared_model(const std::string& reference);
 
 /// A key of the two descriptions with different values, as text.

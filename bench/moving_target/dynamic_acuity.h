@@ -49,7 +49,7 @@ void add_spreads(const std::array<std::vector<DynamicAcuity>, 2>& ends, std::vec
 /// Results at all speeds.
 struct DynamicAcuities {
   std::vector<DynamicAcuity> speeds;
-  std::vector<std::string> notes;  ///< reasons of missing spreads
+  std::vector<std::string> notes;  ///< reasons for missing spreads
 };
 
 /// Computes the acuities with dynamic_trials(). Adds the speed 0 in front if it is missing. If `options` state no

@@ -51,7 +51,7 @@ struct NakedEyeTrial {
   std::uint64_t number = 0;
 };
 
-/// A picture as the display shows it.
+/// Picture as the display shows it.
 struct NakedEyePicture {
   cv::Mat1b levels;    ///< one per displayed sample
   cv::Mat1f contrast;  ///< luminance contrast of every sample against the background, from its level

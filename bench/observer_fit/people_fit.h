@@ -67,7 +67,7 @@ struct PeopleFitOptions {
   }
 };
 
-/// Contrast and size of a cell, in the order of the cells.
+/// Contrast and size of a cell. Cells are ordered by contrast, then by size.
 struct ShownSize {
   double set_delta_t_k = 0, size_mrad = 0;
   auto operator<=>(const ShownSize&) const = default;

@@ -31,7 +31,7 @@ struct SheetText {
 };
 
 /// Drawing of a plate. The origin is the centre of the plate, x right, y down, as the camera sees the plate in identity
-/// mounting. Lines of the layer `cut` are the outline of the plate and of its cut-outs, and no others.
+/// mounting. The layer `cut` contains only the outlines of the plate and of its cut-outs.
 struct PlateSheet {
   std::string title;
   double left_mm = 0, top_mm = 0;  ///< corner of the sheet of paper

@@ -8,7 +8,8 @@
 
 namespace todbench {
 
-/// Returns an SVG file. Its user unit is a millimetre, with the origin of the drawing; one group for each layer.
+/// Returns an SVG file. Its user unit is a millimetre, its origin is the origin of the drawing, and each layer is a
+/// group.
 [[nodiscard]] std::string sheet_svg(const PlateSheet& sheet);
 
 /// Returns a DXF file of release 12 (AC1009) in ASCII, in millimetres, x right, y up: a POLYLINE for each line, on the

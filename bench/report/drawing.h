@@ -40,7 +40,7 @@ struct Disc {
 /// Picture of pixels, scaled to a box.
 struct Raster {
   Box place;
-  std::string png_base64;  ///< a PNG file; is_base64() holds
+  std::string png_base64;  ///< PNG file as base64, for which is_base64() is true
 };
 
 /// Role of a mark; style_of() returns its appearance.

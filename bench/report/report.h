@@ -72,7 +72,7 @@ struct ReportData {
   FitOptions fit;
   std::optional<TodCurve> measured;  ///< curve of the camera
   std::optional<TodCurve> simulated;
-  std::optional<TodCurve> human;         ///< answers of the first person to patches of the camera's frames
+  std::optional<TodCurve> human;         ///< curve of the first person, from answers to patches of the camera's frames
   std::vector<PersonRecord> people;      ///< all people, without their trials and pictures
   std::vector<BarsSitting> bars_people;  ///< answers of people to the bars of the camera
   std::optional<Comparison> comparison;  ///< A is measured, B is simulated
@@ -110,7 +110,7 @@ struct ReportData {
   bool cut_off = false;                       ///< the run wrote no manifest
   std::optional<ReportRevision> revision;     ///< revision of the report of a signed session; empty: first report
   std::vector<std::string> notes;
-  std::optional<std::string> interrupted;   ///< reason of an early end of the run
+  std::optional<std::string> interrupted;   ///< reason for an early end of the run
   std::vector<Interruption> interruptions;  ///< camera losses after which the run continued
 };
 

@@ -29,7 +29,7 @@ struct ReproducedThreshold {
 enum class FigureKind {
   amount,  ///< in its unit; differences are relative
   share,   ///< share of a total in percent; differences are in percentage points
-  change,  ///< change of one relative to another in percent, signed; differences are in percentage points
+  change,  ///< signed change of one value relative to another in percent; differences are in percentage points
 };
 
 /// Published figure and the corresponding result of this program. Texts are plain.

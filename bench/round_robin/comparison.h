@@ -16,7 +16,7 @@ namespace todbench {
 
 /// Measurand of the comparison with the results of its laboratories, in the order of their names.
 struct ComparedItem {
-  std::string item, quantity, unit;  ///< an empty unit: the name of the quantity contains it, as "s75_mrad" does
+  std::string item, quantity, unit;  ///< empty unit: the name of the quantity contains the unit, for example "s75_mrad"
   std::vector<LaboratoryValue> results;
 };
 

@@ -49,7 +49,7 @@ struct SceneDependence {
   SceneDependenceVerdict verdict = SceneDependenceVerdict::inconclusive;
   std::vector<std::string> notes;
   SetUpRecord set_up;           ///< position of the plate
-  cv::Mat1d out, in;            ///< the last averages without and with the bar
+  cv::Mat1d out, in;            ///< last average pictures without and with the bar
   double temporal_noise_k = 0;  ///< temporal noise of a pixel; 0: not measured, or no temperatures
   std::uint64_t frames_used = 0, frames_lost = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
@@ -57,9 +57,9 @@ struct SceneDependence {
 
 /// Options of the measurement.
 struct SceneDependenceOptions {
-  int cycles = 6;                ///< 3 or more; each is out, in, in, out, so that a linear drift cancels
-  int frames = 16;               ///< frames averaged per position of the bar
-  int settle_frames = 0;         ///< frames discarded after the bar has moved, in addition to the number in the plan
+  int cycles = 6;         ///< at least 3; the bar is out, in, in, out in each cycle, so that a linear drift cancels
+  int frames = 16;        ///< frames averaged per position of the bar
+  int settle_frames = 0;  ///< frames discarded after the bar has moved, in addition to the number in the plan
   double tolerance_percent = 2;  ///< largest allowed change of the response
   /// Function called before the first frame, when all parts are ready. An error ends the run. Optional.
   std::function<Result<void>(const SourceInfo& camera, const Target& target)> on_begin{};

@@ -30,7 +30,7 @@ struct SceneDependenceSession {
 [[nodiscard]] Json scene_dependence_json(const SceneDependence& found, const SceneDependenceTask& task);
 
 /// Judges the tolerance as the only demand, by simultaneous 95 % intervals, for the size with the largest deviation.
-/// The limits of the plan apply to a curve and are not judged, as the reason of the verdict states.
+/// The limits of the plan apply to a curve and are not judged; the reason in the verdict states this.
 [[nodiscard]] Verdict verdict_on(const SceneDependence& found, const LimitsPlan& limits);
 
 /// Runs plan_scene_dependence() into a session folder: scene-dependence.json, measures.json with the ratios and both

@@ -30,7 +30,7 @@ struct BarsAnswer {
 /// Answers of a person at one sitting.
 struct BarsSitting {
   PersonFacts person{};
-  std::uint64_t seed = 1;  ///< seed of the order of the decisions
+  std::uint64_t seed = 1;  ///< seed for the order of the decisions
   int magnification = 1;   ///< screen pixels per pixel of the camera; bicubic
   std::vector<BarsAnswer> answers{};
 };

@@ -17,12 +17,11 @@ namespace todbench {
 /// A measure in measures.json.
 struct MeasureRow {
   std::string_view key;  ///< key of its part of the record
-  /// Adds the quantities of the measure, and the measure itself if a figure or a table shows it. No effect if the
-  /// measure was not taken.
+  /// Adds the quantities of the measure, and the measure itself if a figure or a table shows it; no effect if it was
+  /// not taken.
   void (*add)(MeasureLines& out, const CameraMeasures& measures);
   Json (*to_json)(const CameraMeasures& measures);  ///< null if it was not taken
-  /// Reads the numbers that figures and tables show. The reader records errors. Null: figures and tables show no
-  /// numbers.
+  /// Reads the numbers that figures and tables show; mistakes are recorded in the reader. Null: none are shown.
   void (*read)(MeasureLines& out, const JsonReader& part) = nullptr;
   bool (*valid)(const MeasureLines& lines) = nullptr;  ///< checks the numbers read; null: always valid
   std::string_view mistake{};                          ///< sentence if they are not valid

@@ -34,7 +34,7 @@ struct DefectColour {
 [[nodiscard]] std::vector<PixelMap> pixel_maps(const CameraMeasures& measures);
 /// Returns the maps as JSON.
 [[nodiscard]] Json pixel_maps_json(const std::vector<PixelMap>& maps);
-/// Parses the maps; empty if the reader has recorded an error.
+/// Parses the maps; empty if the reader has a mistake.
 [[nodiscard]] std::vector<PixelMap> pixel_maps_from(const JsonReader& maps);
 /// Returns whether the maps are base64 PNG files of at least one pixel.
 [[nodiscard]] bool drawable(const std::vector<PixelMap>& maps);

@@ -49,7 +49,7 @@ struct RunRecord {
   std::vector<SetUpRecord> set_ups;
   std::vector<std::string> notes;
   std::vector<Interruption> interruptions;  ///< camera losses that the run survived
-  std::string ended_by;                     ///< reason of an early end; empty: complete
+  std::string ended_by;                     ///< reason for an early end; empty: complete
   double measures_s = 0;                    ///< part of wall_s: physical measures with their changes of the target
 };
 /// Returns the record of a measurement.

@@ -73,7 +73,7 @@ class SessionFolder {
   /// Writes measures.json and its pictures in pictures/.
   [[nodiscard]] Result<void> write_measures(const std::optional<CameraMeasures>& main,
                                             const std::optional<CameraMeasures>& twin);
-  /// Writes a record that measures_json() returned, in the same way.
+  /// Writes a record of measures_json() in the same way.
   [[nodiscard]] Result<void> write_measures(Json record);
   /// Writes verdict.json.
   [[nodiscard]] Result<void> write_verdict(const Verdict& verdict);

@@ -39,7 +39,7 @@ class TrialsWriter {
 /// repeated or unknown column, row of another length, negative or non-finite size, count negative or not whole, correct
 /// > total).
 [[nodiscard]] Result<std::vector<Level>> read_levels(const std::filesystem::path& file);
-/// Parses the same from text; `name` is its name in messages.
+/// Parses counts in the same format from text. `name`: name of the text in messages.
 [[nodiscard]] Result<std::vector<Level>> parse_levels(std::string_view text, std::string_view name);
 
 }  // namespace todbench

@@ -17,7 +17,7 @@ namespace todbench {
 
 /// MRTD to simulate.
 struct MrtdStudyTask {
-  VirtualMrtdTask trial;      ///< the axis is one of `axes`
+  VirtualMrtdTask trial;      ///< experiment; its axis is one of `axes`
   std::vector<BarAxis> axes;  ///< at least one
   FormulaConditions formula{};
   Atmosphere air{};
@@ -30,7 +30,7 @@ struct MrtdStudyPoint {
   Interval threshold_ci95_k;  ///< 95 % interval of the threshold, from the draws
   /// The threshold as MRTD; empty if the threshold is not an MRTD (see study_mrtd()).
   std::optional<double> mrtd_k;
-  std::string reason;               ///< reason of a missing MRTD; empty if there is one
+  std::string reason;               ///< reason for a missing MRTD; empty if there is one
   std::optional<double> formula_k;  ///< MRTD by a formula with the structure of FLIR92; empty beyond Nyquist
 };
 

@@ -71,7 +71,7 @@ struct ScenePictures {
   /// stages (if any), and after the filter of the observer.
   std::vector<SceneStage> stages;
   cv::Mat1f frame;                         ///< whole frame of the camera as displayed, behind the stages
-  std::optional<double> judged_gain;       ///< gain of the stages; their picture is divided by it
+  std::optional<double> judged_gain;       ///< gain of the stages, by which their picture is divided
   double grey_low_k = 0, grey_high_k = 1;  ///< black and white of every picture, above the background
   double background_k = 300;               ///< camera reading of the background: scene, air and one conversion
   double transmittance = 1;

@@ -138,7 +138,7 @@ class MeasurePresenter final : public QObject {
   [[nodiscard]] ExperimentListener listener();
   [[nodiscard]] ExperimentHost host();
   void begin(const Plan& plan);
-  /// Passes the end of a run to the window; the reason of an early end is the job's own error.
+  /// Passes the end of a run to the window. Returns the reason for an early end as the error of the job.
   [[nodiscard]] Result<void> hand_over(std::uint64_t run, const Result<ExperimentOutcome>& outcome,
                                        std::optional<bool> same);
   void set_state(RunState state);

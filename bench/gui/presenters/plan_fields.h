@@ -21,9 +21,10 @@ enum class FieldKind {
   choice,  ///< one of `words`
   name,    ///< one of `words`, or a file
   file,    ///< the name of a file
-  boxes,   ///< any of `words`, with commas
-  /// Rows with commas, their values with colons; unused columns have empty values. A value that contains one of these
-  /// characters is in double quotes, with its own quotes doubled; values in rows of one column are never quoted.
+  boxes,   ///< any of `words`, separated by commas
+  /// Rows separated by commas, with values separated by colons; unused columns have empty values. A value that contains
+  /// one of these characters is in double quotes, with its own quotes doubled; values in rows of one column are never
+  /// quoted.
   rows,
 };
 
@@ -34,15 +35,15 @@ inline constexpr std::size_t most_columns_beside = 3;
 [[nodiscard]] QString text_of_rows(const std::vector<QStringList>& rows);
 [[nodiscard]] std::vector<QStringList> rows_of_text(const QString& text);
 
-/// A column of a field of rows.
+/// Column of a field of the kind `rows`.
 struct FieldColumn {
   QString title;      ///< with the unit
   QStringList words;  ///< suggested names; empty: none. Other texts are accepted too
   QString longest{};  ///< text that must be fully visible; empty: the title
 };
 
-/// A line of the form. It accepts every readable value in range. Conflicts with other values are found by the
-/// validation of the plan.
+/// A line of the form. It accepts every readable value in range. The validation of the plan finds conflicts with other
+/// values.
 struct PlanField {
   QString label;        ///< with the unit
   QString tool_tip;     ///< meaning, accepted values and default

@@ -63,8 +63,8 @@ class SessionPresenter final : public QObject {
   void open_and_export(const std::filesystem::path& folder);
   /// Returns the open session; empty if there is none.
   [[nodiscard]] const std::optional<OpenedSession>& current() const { return current_; }
-  /// Compares the open session (or the one being opened) with another, with the margin of its plan; compared() or
-  /// problem() follows.
+  /// Compares the open session (or the session that is being opened) with another, with the default margin of
+  /// compare_sessions(). compared() or problem() follows.
   void compare_with(const std::filesystem::path& other);
   [[nodiscard]] const std::optional<ComparedSessions>& compared_sessions() const { return compared_; }
   /// Writes report.html and report.pdf into the open session; exported() or problem() follows.

@@ -119,7 +119,7 @@ class Workbench final : public QObject {
   QString device_ = emulated_laboratory;
   std::vector<DeviceEntry> devices_;
   Activity activity_ = Activity::idle;
-  std::uint64_t run_ = 0;  ///< number of the last run; the end of an older one is ignored
+  std::uint64_t run_ = 0;  ///< number of the last run; the end of an older run is ignored
   LiveFeed feed_;
 #ifdef TODBENCH_WITH_ARAVIS
   std::mutex laboratory_mutex_;
