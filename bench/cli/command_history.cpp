@@ -234,14 +234,23 @@ int run_show(Console& console, const HistoryArguments& a) {
   return 0;
 }
 
-/// Returns the sessions whose manifests differ from the index.
-std::vector<std::string> lost_sessions(const std::vector<HistorySession>& sessions) {
-  std::vector<std::string> lost;
+/// Returns the reasons why sessions are not as they were added: a manifest that differs from the index, and files that
+/// are missing or differ from the manifest.
+std::vector<std::string> changed_sessions(const std::vector<HistorySession>& sessions) {
+  std::vector<std::string> reasons;
   for (const HistorySession& session : sessions) {
-    const auto digest = manifest_digest(session.path);
-    if (!digest || *digest != session.manifest_sha256) lost.push_back(session.path);
+    const auto check = check_manifest(session.path);
+    if (!check || check->manifest_sha256 != session.manifest_sha256) {
+      reasons.push_back(session.path + ": the session is missing or has changed since it was added");
+      continue;
+    }
+    for (const auto& [files, problem] :
+         {std::pair(&check->changed, "has changed since it was written"), std::pair(&check->missing, "is missing"),
+          std::pair(&check->links, "is a symbolic link")}) {
+      for (const std::string& file : *files) reasons.push_back(session.path + ": " + one_line(file) + " " + problem);
+    }
   }
-  return lost;
+  return reasons;
 }
 
 /// Rejects a check of units that are not in the index, or against an impossible limit: it could not report anything.
@@ -278,9 +287,7 @@ int run_check(Console& console, const HistoryArguments& a) {
   if (auto possible = can_be_checked(*sessions, a); !possible) return report_error(console, possible.error());
   const auto all = history_series(*index, a.serial, a.measure);
   if (!all) return report_error(console, all.error());
-  std::vector<std::string> warnings, predicted;
-  for (const std::string& path : lost_sessions(*sessions))
-    warnings.push_back(path + ": the session is missing or has changed since it was added");
+  std::vector<std::string> warnings = changed_sessions(*sessions), predicted;
   for (const HistorySeries& series : *all) {
     const std::string name = series.unit.model + " " + series.unit.serial + ", " + series.measure +
                              (series.condition.empty() ? "" : " at " + series.condition);
