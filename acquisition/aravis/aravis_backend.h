@@ -23,15 +23,15 @@ enum class AravisTransport {
 /// Handling of lost packets.
 enum class PacketResend {
   automatic,  ///< requested again if the camera's capability register states support
-  never,      ///< a frame with a hole is delivered as incomplete when the next frame begins
-  always,     ///< a frame with a hole is delayed by up to 0.1 s
+  never,      ///< delivered as incomplete when the next frame begins, if packets are missing
+  always,     ///< packets requested again in any case; a frame with missing packets is delayed by up to 0.1 s
 };
 
 /// Options of aravis_backend().
 struct AravisOptions {
   AravisTransport transport = AravisTransport::gige_vision;
-  /// PFNC name. Empty: the unpacked monochrome format with the most significant bits; Mono14 is preferred to
-  /// Mono16 if both carry equally many.
+  /// PFNC name. Empty: the unpacked monochrome format with the most significant bits; Mono14 is preferred to Mono16 if
+  /// both have the same number of significant bits.
   std::string pixel_format = {};
   PacketResend packet_resend = PacketResend::automatic;
   /// GigE packet size including IP and UDP headers. 0: 8000 on loopback, otherwise the size that the camera states. The
@@ -46,13 +46,13 @@ struct AravisOptions {
   std::function<void(std::string_view sentence)> on_progress = {};  ///< called about once a second during the reading
 };
 
-/// Lists cameras by discovery (1 s on a network) and opens "gige:VENDOR-SERIAL", or "gige:192.168.1.10" if broadcasts
-/// do not pass; info().id of the source then holds the identity. Opening applies the settings of the camera's family
-/// (linear temperature, full depth, filters off; camera_families.h), checks its test ramp if it has one, and reads
-/// everything back. The first commanded non-uniformity correction also switches the automatic ones off. Errors of
-/// opening: `not_found` (absent; busy, i.e. controlled by another program or by one that crashed within the heartbeat
-/// of about 3 s; no monochrome format of 10 ... 16 bits; description not safe to evaluate, see description_guard.h),
-/// `interrupted`.
+/// Lists cameras by discovery (1 s on a network). Opens "gige:VENDOR-SERIAL", or "gige:192.168.1.10" on a network that
+/// blocks broadcasts; info().id of the source is "gige:VENDOR-SERIAL" in both cases. Opening applies the settings of
+/// the camera's family (linear temperature, full depth, filters off; camera_families.h), checks its test ramp if it has
+/// one, and reads everything back. The first commanded non-uniformity correction also switches the automatic ones off.
+/// Errors of opening: `not_found` (absent; busy, i.e. controlled by another program or by one that crashed within the
+/// heartbeat of about 3 s; no monochrome format of 10 ... 16 bits; description not safe to evaluate, see
+/// description_guard.h), `interrupted`.
 ///
 /// stop() of a source returns within milliseconds if the camera answers and within 0.4 s if it has vanished. A get or
 /// set that is waiting for a vanished camera delays it by up to 2.5 s (five attempts of 0.5 s inside Aravis). A

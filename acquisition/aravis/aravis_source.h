@@ -43,7 +43,7 @@ class AravisSource : public FrameSource {
   struct Arrival {
     std::int64_t host_time_ns = 0;
     bool oversized = false;     ///< more bytes arrived than the buffer holds
-    bool after_unread = false;  ///< since the last arrival, data found no free buffer
+    bool after_unread = false;  ///< frames were lost since the last arrival because no buffer was free
   };
 
   /// Events reported by Aravis's threads. Shared with the callbacks, which may run after the source is destroyed.
@@ -63,8 +63,8 @@ class AravisSource : public FrameSource {
   struct StreamTap {
     std::shared_ptr<Events> events;
     std::atomic<ArvStream*> stream = nullptr;
-    std::uint64_t ignored_bytes = 0;  ///< count of the stream when the present buffer was begun
-    std::uint64_t underruns = 0;      ///< count of the stream at the last arrival
+    std::uint64_t ignored_bytes = 0;  ///< the stream's counter of ignored bytes at the start of the present buffer
+    std::uint64_t underruns = 0;      ///< the stream's underrun counter at the last arrival
   };
 
   AravisSource(GObjectPtr<ArvCamera> camera, AravisOptions options, SourceInfo info, std::string device_address);
@@ -72,13 +72,13 @@ class AravisSource : public FrameSource {
 
   [[nodiscard]] Result<void> refresh();
   [[nodiscard]] Result<void> check_byte_order();
-  /// Takes over a scale measured on the bench. It has precedence over the scale that the camera states.
+  /// Sets a scale that the user measured. It takes precedence over the scale that the camera states.
   [[nodiscard]] Result<void> state_scale(const std::string& feature, const std::string& value);
   [[nodiscard]] Result<std::shared_ptr<ArvStream>> create_stream();
   void configure_transport();
   [[nodiscard]] Result<void> state_frame(const std::string& value);
   [[nodiscard]] Result<void> name_nuc_command(const std::string& value);
-  /// Error for a camera that, since the start, has sent only frames of one size that differs from the stated size.
+  /// Returns an error if the camera has sent frames of only one size since the start and states another size.
   [[nodiscard]] std::optional<Error> misstated_size(const Frame& frame, cv::Size sent);
   void check_socket_buffer(ArvStream* stream);
   void publish_socket_buffer();
@@ -101,17 +101,18 @@ class AravisSource : public FrameSource {
   bool bytes_swapped_ = false;  ///< relative to the byte order that the camera states
   bool corrections_taken_over_ = false;
   std::optional<double> stated_kelvin_per_count_, stated_offset_k_;
-  std::optional<cv::Size> stated_frame_;  ///< by the user, for a camera that states another size than it sends
-  std::string nuc_command_;               ///< stated by the user; empty: that of the family, or found by its name
+  std::optional<cv::Size> stated_frame_;  ///< stated by the user if the camera states a wrong size
+  std::string nuc_command_;               ///< stated by the user; empty: command of the family, or found by name
   StreamFormat format_;
-  int frames_of_wrong_size_ = 0;  ///< in a row since the start; negative: a frame of the right size has arrived
+  int frames_of_wrong_size_ = 0;  ///< in succession since the start; negative: a frame of the right size has arrived
   std::shared_ptr<const RadiometricScale> scale_;
   FrameSequence sequence_{FrameNumberKind::gvsp16, 0};
   std::int64_t may_pause_until_ns_ = 0;  ///< host time until which a commanded correction may interrupt the stream
 
   std::mutex control_;                 ///< serialises communication with the camera; locked before events_->mutex
   std::shared_ptr<ArvStream> stream_;  ///< guarded by events_->mutex; next() keeps it alive while it copies
-  std::shared_ptr<ArvStream> unreachable_stream_;  ///< of a camera that did not answer at stop(); guarded by control_
+  std::shared_ptr<ArvStream> unreachable_stream_;  ///< stream of a camera that did not answer at stop(); guarded by
+                                                   ///< control_
 };
 
 }  // namespace todbench

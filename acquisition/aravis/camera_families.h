@@ -29,15 +29,15 @@ struct CameraFamily {
   std::vector<FeatureChoice> choices;  ///< set in this order when a camera is opened
   std::vector<LinearMode> linear;
   std::string nuc_mode;                    ///< enumeration; empty: none known
-  std::vector<std::string> nuc_commanded;  ///< its entries that restrict corrections to commands, best first
+  std::vector<std::string> nuc_commanded;  ///< entries of nuc_mode that restrict corrections to commands, best first
   std::vector<std::string> nuc_commands;   ///< best first
   std::vector<std::string> frame_rate;     ///< features that hold the frame rate, best first
-  std::string test_pattern, test_ramp;     ///< enumeration and its entry; pixel x of every row has the count x
-  bool high_byte_first = false;            ///< Mono16 arrives with the high byte first and no feature states it
+  std::string test_pattern, test_ramp;     ///< enumeration and its entry; the ramp has the count x at column x
+  bool high_byte_first = false;            ///< Mono16 arrives with the high byte first, but no feature states this
 };
 
 /// Returns the family of a camera by vendor and model, or by its features if the name is unknown; "unlisted" if neither
-/// identifies it. Sources: docs/reference/cameras.md.
+/// identifies the camera. Sources: docs/reference/cameras.md.
 [[nodiscard]] CameraFamily camera_family(std::string_view vendor, std::string_view model,
                                          const std::function<bool(const std::string& feature)>& has_feature);
 

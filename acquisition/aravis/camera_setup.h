@@ -29,31 +29,31 @@ struct StreamFormat {
 [[nodiscard]] CameraFamily family_of(ArvDevice* device, const SourceInfo& info);
 
 /// Applies the settings of the family and sets the pixel format (`wanted`; empty: the best one). Features that the
-/// camera lacks are skipped. Returns a warning for each refused one. Errors: `not_found` (no usable pixel format,
-/// `wanted` refused), `disconnected`.
+/// camera lacks are skipped. Returns a warning for each feature that the camera refuses. Errors: `not_found` (no usable
+/// pixel format, `wanted` refused), `disconnected`.
 [[nodiscard]] Result<std::vector<std::string>> prepare_camera(ArvCamera* camera, const CameraFamily& family,
                                                               const std::string& wanted);
 
 /// Reads geometry, format and payload as the camera states them now. Limited to 16384 x 16384 pixels and 64 MiB,
-/// because memory is reserved by these unverified numbers.
+/// because these unverified numbers determine how much memory is allocated.
 [[nodiscard]] Result<StreamFormat> read_stream_format(ArvCamera* camera);
 
-/// Reads the scale of the camera's present settings back; uncalibrated if they state none. IRFormat (FLIR A3xx ...
-/// A700): 0.01 or 0.1 K per count, or the radiometric formula with R, B, F, J0, J1 at unit emissivity and transmission:
-/// T = B / ln(R J1 / (S - J0) + F). TemperatureLinearMode (FLIR Ax5): 0.04 or 0.4 K per count, or the formula with R,
-/// B, F, O. Float features TemperatureLinearScale (K per count) and TemperatureLinearOffset (K) take precedence over
-/// the names.
+/// Reads the scale of the camera's present settings; uncalibrated if the settings state no scale. IRFormat (FLIR A3xx
+/// ... A700): 0.01 or 0.1 K per count, or the radiometric formula with R, B, F, J0, J1 at unit emissivity and
+/// transmission: T = B / ln(R J1 / (S - J0) + F). TemperatureLinearMode (FLIR Ax5): 0.04 or 0.4 K per count, or the
+/// formula with R, B, F, O. Float features TemperatureLinearScale (K per count) and TemperatureLinearOffset (K) take
+/// precedence over the names.
 [[nodiscard]] RadiometricScale read_scale(ArvDevice* device, const CameraFamily& family);
 
-/// Frames per second; 0 if the camera does not state them.
+/// Returns the frame rate in Hz; 0 if the camera does not state it.
 [[nodiscard]] double read_frame_rate(ArvCamera* camera, const CameraFamily& family);
 
 /// Reads every setting that may influence a measurement, by feature name; features that the camera lacks or refuses are
 /// omitted. Error: `disconnected` at the first read without an answer.
 [[nodiscard]] Result<std::map<std::string, std::string>> read_settings(ArvDevice* device);
 
-/// Commands that correct the non-uniformity, best first: those of the family, or, for a family without any, those that
-/// correction_commands() selects by name.
+/// Returns the commands that correct the non-uniformity, best first: the commands of the family, or, if it has none,
+/// the selection of correction_commands().
 [[nodiscard]] std::vector<std::string> nonuniformity_commands(ArvDevice* device, const CameraFamily& family);
 
 /// Disables automatic corrections, so that only commands correct. Returns a warning if the camera cannot disable them.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Prevents Aravis from evaluating unsafe descriptions of cameras. Private to the Aravis back end.
 //
-// Aravis follows every reference of a description, reserves memory by stated lengths and divides by register values,
-// but only when a feature is requested; before that it only builds nodes from the text. So the text is read and checked
-// before Aravis opens a camera, and compared with the text that Aravis holds before any feature is requested.
+// When a feature is requested, Aravis follows every reference of the description, allocates memory by stated lengths
+// and divides by register values. Before the first request it only builds nodes from the text. So the text is read and
+// checked before Aravis opens a camera, and compared with the text that Aravis holds before any feature is requested.
 #pragma once
 
 #include <chrono>
@@ -31,8 +31,8 @@ struct DescriptionReading {
 [[nodiscard]] Result<std::optional<std::string>> read_safe_description(const std::string& ipv4,
                                                                        const DescriptionReading& reading);
 
-/// Same for a USB3 Vision camera, through the manifest in its registers; empty if no camera has these names or another
-/// program holds it.
+/// Same for a USB3 Vision camera: reads the description through the manifest in the camera's registers. Empty if no
+/// camera has these names or another program holds it.
 [[nodiscard]] Result<std::optional<std::string>> read_safe_description(const UsbNames& names,
                                                                        const DescriptionReading& reading);
 
@@ -40,8 +40,8 @@ struct DescriptionReading {
 /// Call before any feature is requested. `expected`: text that the description must equal. Errors: `not_found`.
 [[nodiscard]] Result<void> guard_device(ArvDevice* device, const std::optional<std::string>& expected);
 
-/// Returns the reason why this feature must not be evaluated, as a sentence about it; empty if it may be. Reads lengths
-/// of registers that are stored only in the camera, and guards a device that is not guarded yet.
+/// Returns one sentence with the reason why this feature must not be evaluated; empty if it may be evaluated. Reads
+/// those register lengths that are stored only in the camera. Guards a device that is not guarded yet.
 [[nodiscard]] std::optional<std::string> feature_fault(ArvDevice* device, const std::string& feature);
 
 }  // namespace todbench

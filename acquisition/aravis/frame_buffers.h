@@ -12,28 +12,27 @@
 
 namespace todbench {
 
-/// Number of buffers of `payload_bytes` for a stream: two seconds of frames, so that the consumer may pause for a fit
-/// or a disk without loss; 64 if the rate is unknown; at most 256 MiB.
+/// Returns the number of buffers of `payload_bytes` for a stream. They hold two seconds of frames, so no frame is lost
+/// while the consumer waits for a fit or a disk. 64 if the rate is unknown; at most 256 MiB.
 [[nodiscard]] int buffer_count(double frame_rate_hz, std::size_t payload_bytes);
 
-/// Size of a buffer that reveals a frame larger than stated: one byte more on a network, where Aravis silently drops
-/// the bytes that do not fit. Over USB a transfer must end with the payload.
+/// Returns the size of a buffer that reveals a frame larger than stated. It is one byte more than the payload on a
+/// network, where Aravis silently drops the bytes that do not fit. Over USB a transfer must end with the payload.
 [[nodiscard]] std::size_t buffer_bytes(const StreamFormat& format);
 
-/// Returns a buffer ready for a stream: zeroed, so that the holes of an incomplete frame contain no old data, and
-/// without id.
+/// Returns a buffer for a stream: without id, and zeroed so that the gaps of an incomplete frame contain no old data.
 [[nodiscard]] GObjectPtr<ArvBuffer> new_frame_buffer(std::size_t bytes);
 
-/// Clears the id, so that a frame whose leader packet is lost does not return with the id of an older one.
+/// Clears the id. Otherwise a frame whose leader packet is lost would return with the id of an older frame.
 void clear_frame_id(ArvBuffer* buffer);
 
-/// The id of the frame in the buffer; empty if its leader packet was lost.
+/// Returns the id of the frame in the buffer; empty if its leader packet was lost.
 [[nodiscard]] std::optional<std::uint64_t> frame_id_of(ArvBuffer* buffer);
 
-/// Size of the picture according to the leader; empty without a leader or if the payload is not an image.
+/// Returns the size of the picture according to the leader; empty without a leader or if the payload is not an image.
 [[nodiscard]] cv::Size size_of_leader(ArvBuffer* buffer);
 
-/// False if the buffer returned only because the stream ended.
+/// Returns false if the buffer returned only because the stream ended.
 [[nodiscard]] bool holds_exposure(ArvBuffer* buffer);
 
 /// Returns the frame in the buffer: pixels copied once, without the padding stated by the leader. The caller fills in

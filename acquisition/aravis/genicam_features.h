@@ -9,7 +9,7 @@
 
 namespace todbench {
 
-/// True if the camera describes and implements `name`.
+/// Returns whether the camera describes and implements `name`.
 [[nodiscard]] bool has_feature(ArvDevice* device, const std::string& name);
 
 /// Returns the value of an integer, float, enumeration, boolean or string feature. The text of a float reads back
@@ -23,10 +23,10 @@ namespace todbench {
 /// Returns the value of a numeric feature; `invalid_input` if it is not a number.
 [[nodiscard]] Result<double> get_number(ArvDevice* device, const std::string& name);
 
-/// Entries of an enumeration that are available now; empty if there is no such enumeration.
+/// Returns the entries of an enumeration that are available now; empty if there is no such enumeration.
 [[nodiscard]] std::vector<std::string> enumeration_entries(ArvDevice* device, const std::string& name);
 
-/// Names of all commands and of all enumerations in the camera's feature tree.
+/// Return the names of all commands and of all enumerations in the camera's feature tree.
 [[nodiscard]] std::vector<std::string> command_names(ArvDevice* device);
 [[nodiscard]] std::vector<std::string> enumeration_names(ArvDevice* device);
 

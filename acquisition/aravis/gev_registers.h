@@ -44,7 +44,7 @@ inline constexpr std::uint32_t fire_test_packet = 0x80000000;
 inline constexpr std::uint32_t pixels_big_endian = 0x20000000;
 inline constexpr std::uint32_t packet_size_mask = 0x0000FFFF;
 
-/// Value of gvcp_capability: packet resend, WRITEMEM, several registers in one message.
+/// Value of gvcp_capability: the device supports packet resend, WRITEMEM and several registers in one message.
 inline constexpr std::uint32_t capabilities = 7;
 
 /// Size of the answer to DISCOVERY: the first registers unchanged.

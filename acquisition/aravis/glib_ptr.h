@@ -40,13 +40,13 @@ class GErrorSlot {
   }
   [[nodiscard]] explicit operator bool() const { return error_ != nullptr; }
   [[nodiscard]] std::string message() const { return error_ != nullptr ? error_->message : "unknown error"; }
-  /// True if the device did not answer; false if it refused.
+  /// Returns true if the device did not answer, and false if it refused.
   [[nodiscard]] bool lost() const {
     return error_ != nullptr && error_->domain == ARV_DEVICE_ERROR &&
            (error_->code == ARV_DEVICE_ERROR_TIMEOUT || error_->code == ARV_DEVICE_ERROR_NOT_CONNECTED ||
             error_->code == ARV_DEVICE_ERROR_TRANSFER_ERROR);
   }
-  /// `disconnected` if the device did not answer, otherwise `refused`.
+  /// Returns an error with code `disconnected` if the device did not answer, otherwise with code `refused`.
   [[nodiscard]] tl::unexpected<Error> failure(ErrorCode refused, const std::string& doing) const {
     return fail(lost() ? ErrorCode::disconnected : refused, doing + ": " + message());
   }

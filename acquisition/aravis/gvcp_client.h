@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // GigE Vision control messages with a time limit: reads registers and texts over a plain UDP socket. Source: GigE
-// Vision 2.0, chapter "GVCP"; key byte 0x42, acknowledge = command + 1.
+// Vision 2.0, chapter "GVCP"; the key byte is 0x42, and an acknowledge code is the command code + 1.
 #pragma once
 
 #include <chrono>
@@ -16,10 +16,10 @@ namespace todbench {
 
 /// UDP port of every GigE Vision device; fixed by the standard.
 inline constexpr std::uint16_t gvcp_port = 3956;
-/// Version register: every device answers reads of it by any client, without side effects.
+/// Version register. Every device answers any client that reads it, without side effects.
 inline constexpr std::uint32_t gvcp_version_register = gev::version;
-/// Control channel privilege: not zero while a client controls the device. Do not poll it: some devices mistake a read
-/// of it for the controller's heartbeat.
+/// Control channel privilege: not zero while a client controls the device. Do not poll it, because some devices take
+/// such a read for the controller's heartbeat.
 inline constexpr std::uint32_t gvcp_control_privilege_register = gev::control_privilege;
 
 /// Reads a 32-bit register of the device at `ipv4`; needs no control privilege. Repeats the request every 50 ms and
@@ -40,7 +40,7 @@ struct GvcpReading {
 };
 
 /// Reads `bytes` of the device's memory, 512 at a time, from an address that is a multiple of 4. Errors: as above;
-/// `not_found` also after `patience`, with the progress; `interrupted`.
+/// `not_found`, with the progress, also if `patience` expires; `interrupted`.
 [[nodiscard]] Result<std::string> gvcp_read_memory(const std::string& ipv4, std::uint32_t address, std::uint32_t bytes,
                                                    const GvcpReading& reading);
 

@@ -15,11 +15,11 @@ struct HostAddress {
   int mtu_bytes = 0;                    ///< 0: unknown
 };
 
-/// Addresses of the interfaces that are up.
+/// Returns the addresses of the interfaces that are up.
 [[nodiscard]] std::vector<HostAddress> host_addresses();
 
-/// Returns a warning if the camera at `ipv4` is in none of these networks: it then answers broadcasts, but no other
-/// packet reaches it. Empty if a network contains it or `ipv4` is not an address.
+/// Returns a warning if the camera at `ipv4` is in none of these networks: the camera then answers broadcasts, but no
+/// other packets reach it. Empty if a network contains it or `ipv4` is not an address.
 [[nodiscard]] std::string wrong_network(const std::string& ipv4, const std::vector<HostAddress>& hosts);
 
 /// Returns a warning if packets of this size, IP and UDP headers included, exceed the MTU of the camera's interface.

@@ -26,12 +26,12 @@ enum class ChunkLayout {
   little_endian,  ///< chunks, each followed by its id and length: USB3 Vision
 };
 
-/// Bytes from the start of a row to the start of the next; 0: rows of a packed format without gaps, which share a byte
-/// if they do not fill whole ones.
+/// Returns the distance between the starts of two rows in bytes. 0 for a packed format without gaps if its rows do not
+/// fill whole bytes: neighbouring rows then share a byte.
 [[nodiscard]] std::size_t row_bytes(const StatedImage& image);
 
-/// Returns the bytes of the image, padding included. Empty if their number differs from the stated one: a row that is
-/// longer than stated would shift every later pixel. In a chunk layout the image is the first chunk, which may be
+/// Returns the bytes of the image, padding included. Empty if their number differs from the stated number, because a
+/// row longer than stated would shift every later pixel. In a chunk layout the image is the first chunk, which may be
 /// padded to a multiple of eight bytes.
 [[nodiscard]] std::optional<std::span<const std::uint8_t>> image_bytes(std::span<const std::uint8_t> received,
                                                                        const StatedImage& image, ChunkLayout chunks);

@@ -11,13 +11,13 @@
 namespace todbench {
 
 /// Features that hold a camera's assumptions about object, atmosphere, window and optics, for all families. Sources:
-/// FLIR_A35.xml of areaDetector/ADGenICam, FLIR's node lists of A3xx ... A700; the others are makers' names in the
-/// style of SFNC. docs/reference/cameras.md lists the features of each family.
+/// FLIR_A35.xml of areaDetector/ADGenICam, FLIR's node lists of A3xx ... A700; the other names follow the style of SFNC
+/// and come from camera makers. docs/reference/cameras.md lists the features of each family.
 [[nodiscard]] std::span<const char* const> object_parameters();
 
-/// Returns a warning that names the settings under which the camera computes temperatures for something other than a
-/// black body viewed directly: the contrast that it reports is then larger than the observed one. Empty if all settings
-/// are neutral or absent.
+/// Returns a warning that names the settings under which the camera does not assume a black body that it views
+/// directly. The contrast that the camera reports is then larger than the observed contrast. Empty if all settings are
+/// neutral or absent.
 [[nodiscard]] std::vector<std::string> object_parameter_notes(const std::map<std::string, std::string>& settings);
 
 }  // namespace todbench

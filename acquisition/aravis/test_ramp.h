@@ -13,9 +13,9 @@ enum class RampVerdict {
   no_ramp,   ///< neither: another picture, or too few pixels
 };
 
-/// Judges a test ramp: nearly everywhere a pixel exceeds its left neighbour by the same small step; where the ramp
-/// restarts, the count falls back. Needs at least 16 columns; all rows are examined, and 95 % of the neighbours must
-/// agree.
+/// Judges a test ramp. In a ramp nearly every pixel exceeds its left neighbour by the same small step, and the count
+/// falls back where the ramp restarts. All rows are examined; 95 % of the neighbours must agree. Needs at least 16
+/// columns.
 [[nodiscard]] RampVerdict judge_test_ramp(const cv::Mat1w& counts);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Identity and stream registers that the standard gives every USB3 Vision camera. Private to the Aravis back end.
+// Identity and stream registers that the standard defines for every USB3 Vision camera. Private to the Aravis back end.
 #pragma once
 
 #include <string>
@@ -17,11 +17,11 @@ inline constexpr std::uint64_t most_payload_bytes = 64U << 20U;
 struct U3vIdentity {
   std::string vendor, model, version, serial;
 };
-/// Reads the identity.
+/// Reads the strings from the camera.
 [[nodiscard]] U3vIdentity u3v_identity(ArvDevice* device);
 
-/// Checks that the stream registers of a USB3 Vision camera (USB3 Vision 1.0, table 5-8) are safe for Aravis, which
-/// divides by the sizes in them and allocates memory by them. GigE cameras always pass. Errors: `not_found` with the
+/// Checks that the stream registers of a USB3 Vision camera (USB3 Vision 1.0, table 5-8) are safe: Aravis divides by
+/// the sizes in them and allocates memory by them. GigE cameras always pass. Error: `not_found` with the name of the
 /// register.
 [[nodiscard]] Result<void> check_stream_registers(ArvDevice* device);
 

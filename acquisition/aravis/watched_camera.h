@@ -3,8 +3,9 @@
 // end.
 //
 // Aravis emits "control-lost" on a thread of the device (heartbeat, USB events), and the destruction of the device
-// joins that thread. An emission holds a reference to the device; if it is the last one, the thread joins itself and
-// GLib aborts the program. So the owner must hold the last reference: it waits until no emission can be running.
+// joins that thread. An emission holds a reference to the device. If this is the last reference, the thread joins
+// itself and GLib aborts the program. So the owner must hold the last reference: it waits until no emission can be
+// running.
 #pragma once
 
 #include <functional>
@@ -20,7 +21,8 @@ class WatchedCamera {
   /// `on_lost` is called on a thread of Aravis. It must not wait for the thread that destroys this object.
   WatchedCamera(GObjectPtr<ArvCamera> camera, std::function<void()> on_lost);
   /// Destroys camera and device on this thread, after every emission of "control-lost" has ended and every other
-  /// reference to the device is gone: destroy streams first. Takes five seconds if the camera does not answer.
+  /// reference to the device has been released. Destroy streams first. Takes five seconds if the camera does not
+  /// answer.
   ~WatchedCamera();
   WatchedCamera(WatchedCamera&&) noexcept = default;
   WatchedCamera& operator=(WatchedCamera&&) = delete;
