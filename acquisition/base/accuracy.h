@@ -10,25 +10,25 @@ namespace todbench {
 
 /// Tolerances in physical terms, passed to every computation (after GSParams of GalSim).
 struct Accuracy {
-  double acuity_tolerance_percent = 1;  ///< of the 75 % acuity, for all numerical causes together
-  double wrap_tolerance = 1.5e-5;       ///< relative to the contrast: signal that periodicity folds back into a pixel
-  double band_tolerance = 1e-4;         ///< relative to the contrast: signal beyond the highest computed frequency
-  int wavelengths = 16;                 ///< Gauss-Legendre nodes over the band
-  int phases_per_axis = 8;              ///< sampling phases averaged by the direct estimate, per pitch and axis
-  int noise_draws = 600;                ///< draws of the direct estimate per size, shared by phases and contrasts
-  double standard_error_percent = 0;    ///< of the direct estimate: draws are added until it is reached; 0: no target
+  double acuity_tolerance_percent = 1;  ///< of the 75 % acuity; limit of all numerical errors together
+  double wrap_tolerance = 1.5e-5;  ///< relative to the contrast: signal that the periodic grid folds back into a pixel
+  double band_tolerance = 1e-4;    ///< relative to the contrast: signal beyond the highest computed frequency
+  int wavelengths = 16;            ///< Gauss-Legendre nodes over the band
+  int phases_per_axis = 8;         ///< sampling phases averaged by the direct estimate, per pitch and axis
+  int noise_draws = 600;           ///< draws of the direct estimate per size, shared by phases and contrasts
+  double standard_error_percent = 0;  ///< of the direct estimate: draws are added until it is reached; 0: no target
   bool operator==(const Accuracy&) const = default;
 
   /// Upper limit of the draws per size: 40 MB of projected noise per size.
   static constexpr int max_noise_draws = 8000;
 
-  /// Derives everything from the acuity tolerance: half of it for the standard error, the rest in proportion.
+  /// Derives all tolerances from the acuity tolerance: half of it for the standard error, the others in proportion.
   [[nodiscard]] static Accuracy for_tolerance(double acuity_tolerance_percent);
   [[nodiscard]] static Accuracy draft();
   [[nodiscard]] static Accuracy normal();
   [[nodiscard]] static Accuracy reference();
-  /// Returns a level by name: "draft", "normal", "reference", or "auto" (for_tolerance() of the default tolerance);
-  /// otherwise `invalid_input`.
+  /// Returns a level by name: "draft", "normal", "reference", or "auto" (for_tolerance() of the default tolerance).
+  /// Error: `invalid_input` for any other name.
   [[nodiscard]] static Result<Accuracy> named(std::string_view level);
 };
 

@@ -12,7 +12,7 @@ namespace todbench {
 /// are destroyed, so the work must end by itself within seconds. Any thread.
 void start_in_background(std::function<void()> work);
 
-/// Same for work that can be moved but not copied; it is destroyed on its thread after it has run.
+/// Same for work that can be moved but not copied. The work is destroyed on its thread after it has run.
 template <typename Work>
 void finish_in_background(Work work) {
   start_in_background([held = std::make_shared<Work>(std::move(work))]() mutable {

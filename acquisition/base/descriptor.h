@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Owned POSIX file descriptors, and waiting on them with immediate end at a stop request.
+// Owned POSIX file descriptors, and waits on them that end at once on a stop request.
 #pragma once
 
 #include <chrono>
@@ -32,11 +32,13 @@ class Descriptor {
   int fd_ = -1;
 };
 
-/// Becomes readable when stop is requested: add it to a poll() with the other descriptors. Lives on the waiting thread.
+/// A descriptor that becomes readable on a stop request: add it to a poll() with the other descriptors. Lives on the
+/// waiting thread.
 class StopEvent {
  public:
   explicit StopEvent(const std::stop_token& stop);
-  /// -1 if the system gave no descriptor: poll() ignores it, and the stop is noticed at the next deadline.
+  /// Returns -1 if the system provided no descriptor: poll() then ignores it, and the stop is noticed at the next
+  /// deadline.
   [[nodiscard]] int fd() const { return event_.get(); }
 
  private:
@@ -48,13 +50,13 @@ class StopEvent {
   std::stop_callback<Signal> callback_;
 };
 
-/// Result of wait_on().
+/// Reason why wait_on() returned.
 enum class Waited { ready, timeout, stopped };
 /// Event that wait_on() waits for.
 enum class WaitFor { reading, writing };
 
 /// Waits until the descriptor can be read or written (or has an error or end of file to report), at most until
-/// `deadline`; without a deadline for ever.
+/// `deadline`; without a deadline it waits indefinitely.
 [[nodiscard]] Waited wait_on(int fd, WaitFor what, std::optional<std::chrono::steady_clock::time_point> deadline,
                              const std::stop_token& stop);
 

@@ -31,20 +31,20 @@ struct FisherF {
   double numerator_freedom, denominator_freedom;
 };
 
-/// Selects the upper tail, without the cancellation of 1 - p.
+/// Selects the upper tail of a distribution. It avoids the cancellation in 1 - p.
 template <class Law>
 struct Complement {
   Law law;
-  double value;  ///< of the variable in cdf(), a probability in quantile()
+  double value;  ///< value of the variable for cdf(), probability for quantile()
 };
-/// Makes a Complement.
+/// Returns a Complement.
 template <class Law>
 [[nodiscard]] Complement<Law> complement(const Law& law, double value) {
   return {law, value};
 }
 
-/// Distribution function, quantile and density of the four distributions above. They throw std::domain_error as
-/// Boost.Math does: for degrees of freedom that are not positive or a probability outside 0..1.
+/// Return distribution function, quantile and density of the four distributions above. They throw std::domain_error, as
+/// Boost.Math does, if degrees of freedom are not positive or a probability is outside 0..1.
 template <class Law>
 [[nodiscard]] double cdf(const Law& law, double x);
 template <class Law>
@@ -55,9 +55,10 @@ template <class Law>
 [[nodiscard]] double quantile(const Complement<Law>& above);
 [[nodiscard]] double pdf(const Normal& law, double x);
 
-/// Probability above `x` of Student's t; of the standard normal if the degrees of freedom are absent or infinite.
+/// Returns the probability above `x` of Student's t, or of the standard normal if the degrees of freedom are absent or
+/// infinite.
 [[nodiscard]] double tail_above(double x, const std::optional<double>& degrees_of_freedom);
-/// Inverse of tail_above(): the value with `probability` above it.
+/// Returns the value with `probability` above it: the inverse of tail_above().
 [[nodiscard]] double quantile_above(double probability, const std::optional<double>& degrees_of_freedom);
 
 }  // namespace todbench::distribution

@@ -7,7 +7,7 @@
 
 namespace todbench {
 
-/// Arithmetic mean; NaN for an empty span.
+/// Returns the arithmetic mean; NaN for an empty span.
 [[nodiscard]] inline double arithmetic_mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }

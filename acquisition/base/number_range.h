@@ -19,7 +19,7 @@ struct NumberRange {
   [[nodiscard]] static constexpr NumberRange between(double low, double high) { return {.low = low, .high = high}; }
   [[nodiscard]] static constexpr NumberRange above_to(double low, double high) { return {low, high, Edge::excluded}; }
   [[nodiscard]] bool contains(double value) const;
-  /// "a number above 0", "a number from 0 to 0.1".
+  /// Returns a text for messages: "a number above 0", "a number from 0 to 0.1".
   [[nodiscard]] std::string describe() const;
 };
 

@@ -13,15 +13,15 @@
 
 namespace todbench {
 
-/// Descriptors that the child receives; -1: the child inherits that of this program (`at_three`: none). The caller
-/// closes its own.
+/// Descriptors that the child receives. -1: the child inherits the descriptor of this program (`at_three`: none). The
+/// caller closes its own copies.
 struct ChildStreams {
   int input = -1, output = -1, error = -1;
   int at_three = -1;  ///< becomes descriptor 3
 };
 
-/// Process group of a child: `ours` receives Ctrl-C from the terminal of this program; `own` can be ended with all its
-/// children.
+/// Process group of a child: `ours` receives Ctrl-C from the terminal of this program; `own` can be ended together with
+/// all children of the child.
 enum class ChildGroup { ours, own };
 
 /// Starts a program by name or path, with all signals unblocked and SIGPIPE not ignored. Errors: `not_found` with the
@@ -36,14 +36,14 @@ enum class ChildGroup { ours, own };
 /// Result of run_program().
 struct ProgramRun {
   int exit_code = 0;   ///< 128 + signal number if a signal ended it
-  std::string output;  ///< at most 1 MiB; empty if it was shown
+  std::string output;  ///< at most 1 MiB; empty for ProgramOutput::shown
 };
 
-/// Destination of a child's output.
+/// Destination of the output of a child.
 enum class ProgramOutput {
   kept,             ///< standard output and standard error
   kept_but_errors,  ///< standard output; standard error is discarded
-  shown,            ///< on the output of this program: the child may ask a question
+  shown,            ///< displayed on the output of this program, because the child may ask a question
 };
 
 /// Runs a program with the standard input of this program and waits for it. A stop request ends it with SIGTERM. Errors
@@ -51,17 +51,17 @@ enum class ProgramOutput {
 [[nodiscard]] Result<ProgramRun> run_program(std::vector<std::string> words, ProgramOutput output,
                                              const std::stop_token& stop = {});
 
-/// Path of this program.
+/// Returns the path of this program.
 [[nodiscard]] std::string own_program();
 
-/// Both ends of a new pipe. A child has an end only if its ChildStreams name it.
+/// Both ends of a new pipe. A child has an end only if its ChildStreams contain it.
 struct Pipe {
   Descriptor read, write;
 };
 /// Creates a pipe. Errors: `internal`.
 [[nodiscard]] Result<Pipe> make_pipe();
 
-/// /dev/null, to discard output or to give an empty input.
+/// Opens /dev/null, to discard output or to provide an empty input.
 [[nodiscard]] Descriptor null_device();
 
 }  // namespace todbench

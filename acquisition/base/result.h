@@ -25,15 +25,15 @@ enum class ErrorCode {
   internal,          ///< a bug of the program
 };
 
-/// The subject of a failure, for a caller that has another name for it: a form, a command line.
+/// The subject of a failure, for a caller that uses another name for it, such as a form or a command line.
 struct ErrorKey {
   std::string name;    ///< a key of a description with its section ("target.delta_t_k"), an option ("--seed") or a file
   std::string reason;  ///< the fault without the name: "expected a number above 0, found 0"
   bool operator==(const ErrorKey&) const = default;
 };
 
-/// A failure in one sentence. The message grows outwards: "opening gige:X: setting PixelFormat=Mono16: access denied".
-/// The message is for people; callers branch on `code` and take the subject from `key`.
+/// A failure in one sentence. Each caller adds its action in front: "opening gige:X: setting PixelFormat=Mono16: access
+/// denied". The message is for people; callers branch on `code` and take the subject from `key`.
 struct Error {
   ErrorCode code = ErrorCode::internal;
   std::string message;
@@ -44,35 +44,36 @@ struct Error {
 template <typename T>
 using Result = tl::expected<T, Error>;
 
-/// Shorthand for the failing side of a Result.
+/// Returns the failing side of a Result.
 [[nodiscard]] inline tl::unexpected<Error> fail(ErrorCode code, std::string message) {
   return tl::unexpected<Error>(Error{code, std::move(message)});
 }
 
-/// The failing side of a Result with `name` as subject: "NAME: REASON".
+/// Returns the failing side of a Result with `name` as subject: "NAME: REASON".
 [[nodiscard]] inline tl::unexpected<Error> fail_at(ErrorCode code, std::string name, std::string reason) {
   std::string message = name + ": " + reason;
   return tl::unexpected<Error>(Error{code, std::move(message), ErrorKey{std::move(name), std::move(reason)}});
 }
 
-/// The same error with the caller's action in front. Its subject stays the same.
+/// Returns the same error with the caller's action in front. The subject stays the same.
 [[nodiscard]] inline Error with_context(std::string_view doing, const Error& cause) {
   return {cause.code, std::string(doing) + ": " + cause.message, cause.key};
 }
 
-/// with_context() as the failing side of a Result.
+/// Returns with_context() as the failing side of a Result.
 [[nodiscard]] inline tl::unexpected<Error> fail(std::string_view doing, const Error& cause) {
   return tl::unexpected<Error>(with_context(doing, cause));
 }
 
-/// The same error with its subject renamed to the user's term: "NAME: REASON". Precondition: the error has a key.
+/// Returns the same error with its subject renamed to the user's term: "NAME: REASON". Precondition: the error has a
+/// key.
 [[nodiscard]] inline Error renamed(const Error& cause, std::string name) {
   assert(cause.key);
   std::string message = name + ": " + cause.key->reason;
   return {cause.code, std::move(message), ErrorKey{std::move(name), cause.key->reason}};
 }
 
-/// The same error under another code, for a caller to whom it has another meaning.
+/// Returns the same error under another code, for a caller to whom it has another meaning.
 [[nodiscard]] inline Error with_code(ErrorCode code, Error cause) {
   cause.code = code;
   return cause;

@@ -11,26 +11,26 @@
 namespace todbench {
 
 /// One independent sequence of random numbers. A value type without state: the position is an argument. Thread-safe.
-/// Streams are named so that omitting one consumer never shifts the numbers of another.
+/// Streams have names, so removing one consumer never shifts the numbers of another.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::uint64_t stream) : seed_(seed), stream_(stream) {}
-  /// The stream whose number is the FNV-1a hash of `name`, e.g. "sensor.temporal".
+  /// Selects the stream whose number is the FNV-1a hash of `name`, e.g. "sensor.temporal".
   RandomStream(std::uint64_t seed, std::string_view name);
 
-  /// The substream of item `index` (a frame of a sensor, a trial of an observer).
+  /// Returns the the substream of item `index` (a frame of a sensor, a trial of an observer).
   [[nodiscard]] RandomStream sub(std::uint64_t index) const;
 
-  /// Four raw 32-bit words at position `index`.
+  /// Returns four raw 32-bit words at position `index`.
   [[nodiscard]] std::array<std::uint32_t, 4> words(std::uint64_t index) const;
-  /// Uniform in (0, 1), 52 bits, at position `index`.
+  /// Returns a uniform number in (0, 1), 52 bits, at position `index`.
   [[nodiscard]] double uniform(std::uint64_t index) const;
-  /// Uniform integer in [0, count), 1 <= count <= 2^50, bias below count / 2^52.
+  /// Returns a uniform integer in [0, count), 1 <= count <= 2^50, with a bias below count / 2^52.
   [[nodiscard]] std::uint64_t below(std::uint64_t count, std::uint64_t index) const;
-  /// Standard normal at position `index`, the same value as in fill_normal().
+  /// Returns a standard normal number at position `index`, the same value as in fill_normal().
   [[nodiscard]] float normal(std::uint64_t index) const;
-  /// Standard normals for positions first, first + 1, ... Single precision, |z| <= 5.9; bit-identical on every
-  /// compiler.
+  /// Writes standard normal numbers for positions first, first + 1, ... Single precision, |z| <= 5.9; bit-identical on
+  /// every compiler.
   void fill_normal(std::span<float> out, std::uint64_t first = 0) const;
 
   [[nodiscard]] std::uint64_t seed() const { return seed_; }

@@ -20,12 +20,12 @@ struct NewFile {
 /// Creates an empty file with a random hidden name (".NAME.XXXXXXXXXXXXXXXX.part") in the folder of `file`. An existing
 /// file is never opened. Error: `io` with the path of `file` and the reason.
 [[nodiscard]] Result<NewFile> make_file_beside(const std::filesystem::path& file, mode_t mode = 0666);
-/// Whether a file name has the form of make_file_beside(): a killed program leaves these files behind.
+/// Returns whether a file name has the form of make_file_beside(). A killed program leaves these files behind.
 [[nodiscard]] bool is_name_of_a_part(const std::filesystem::path& file);
 
-/// Creates an empty file of this name for reading and writing. An existing file or link is replaced, not written
-/// through. A character device is opened if it is named directly. Error: `io` with path and reason, also for a folder,
-/// a pipe or a socket. The caller closes the descriptor.
+/// Creates an empty file of this name for reading and writing. An existing file or link is replaced; the target of a
+/// link stays unchanged. A character device is opened if it is named directly. Error: `io` with path and reason, also
+/// for a folder, a pipe or a socket. The caller closes the descriptor.
 [[nodiscard]] Result<int> make_empty_file(const std::filesystem::path& file, mode_t mode = 0666);
 
 /// Opens or creates a regular file for appending. A link is refused. Errors as make_empty_file().
@@ -36,7 +36,7 @@ struct NewFile {
 /// closes the descriptor.
 [[nodiscard]] Result<int> open_to_read(const std::filesystem::path& file);
 
-/// Writes all of `content`, also if writes are interrupted or partial. Returns 0 or the error number.
+/// Writes all of `content`, even if writes are interrupted or partial. Returns 0 or the error number.
 [[nodiscard]] int write_all(int descriptor, std::string_view content);
 
 }  // namespace todbench

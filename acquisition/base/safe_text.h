@@ -12,15 +12,17 @@ namespace todbench {
 /// Maximum characters of one_line().
 inline constexpr std::size_t longest_shown_line = 4000;
 
-/// Returns valid UTF-8. U+FFFD replaces invalid bytes, control characters (C0 except tab and line ends, DEL, C1) and
-/// characters that change the direction or the line of the surrounding text (Unicode 15, annex 9: marks, embeddings,
-/// overrides, isolates; line and paragraph separators).
+/// Returns valid UTF-8. U+FFFD replaces three kinds of text: invalid bytes; control characters (C0 except tab and line
+/// ends, DEL, C1); and characters that change the direction or the line of the surrounding text (Unicode 15, annex 9:
+/// marks, embeddings, overrides, isolates; line and paragraph separators).
 [[nodiscard]] std::string valid_text(std::string_view text);
-/// valid_text() on one line: C0 and DEL become blanks; a text of more than `longest` characters ends in an ellipsis.
+/// Returns valid_text() on one line: C0 and DEL become blanks. A text of more than `longest` characters ends in an
+/// ellipsis.
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t longest = longest_shown_line);
-/// Finished JSON with the characters that valid_text() replaces as \u escapes. They occur only inside its strings.
+/// Returns finished JSON in which \u escapes stand for the characters that valid_text() replaces. These occur only
+/// inside its strings.
 [[nodiscard]] std::string escaped_json(std::string_view json);
-/// Returns the text with the letters A to Z as a to z, in every locale.
+/// Returns the text with the letters A to Z in lower case, in every locale.
 [[nodiscard]] std::string lower_case(std::string_view text);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Text of a failed system call's error.
+// Text of the error of a failed system call.
 #pragma once
 
 #include <cerrno>
@@ -8,7 +8,7 @@
 
 namespace todbench {
 
-/// The text of errno. Call it directly after the failed call: any call in between may change errno.
+/// Returns the text of errno. Call it directly after the failed call: any call in between may change errno.
 [[nodiscard]] inline std::string system_reason() {
   return std::generic_category().message(errno);
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The value of a Result, or return with its error.
+// Macros that evaluate a Result and return its error to the caller.
 #pragma once
 
 #include <utility>
@@ -17,7 +17,7 @@
 /// is assigned to `target`:
 ///   TODBENCH_TRY(const auto text, read_text_file(file));
 ///   TODBENCH_TRY(session.plan, load_plan(file));
-/// Three statements: not for the body of an `if` without braces, and one on a line.
+/// Expands to three statements: do not use it as the body of an `if` without braces, and write at most one on a line.
 #define TODBENCH_TRY(target, ...) TODBENCH_TRY_(TODBENCH_TRY_NAME_(__LINE__), target, __VA_ARGS__)
 
 #define TODBENCH_TRY_VOID_(result, ...)                                                 \
