@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests the byte order of 16-bit counts by the picture itself.
+// Determines the byte order of 16-bit counts from the picture itself.
 #pragma once
 
 #include <cstdint>
@@ -20,13 +20,13 @@ enum class ByteOrderVerdict {
 
 /// Result of the test. V(x) is the mean absolute difference of horizontal neighbours in a picture x. Counts of a
 /// thermal picture change little from pixel to pixel: their high byte is smooth, their low byte is not. Swapping makes
-/// the low byte the high one and V grows, for a random low byte to 256 * 256 / 3 = 21845 counts.
+/// the low byte the high byte, and V increases: for a random low byte to 256 * 256 / 3 = 21845 counts.
 struct ByteOrderEvidence {
   /// ln(V(x) / V(x with swapped bytes)); antisymmetric under swapping. Negative: the order is right. Zero if the
   /// verdict is undecided because a picture is flat.
   double log_ratio = 0;
   ByteOrderVerdict verdict = ByteOrderVerdict::undecided;
-  std::uint16_t bits = 0;  ///< that are set in any examined pixel
+  std::uint16_t bits = 0;  ///< bits that are set in at least one examined pixel
 };
 
 /// Options of byte_order_evidence().
@@ -36,7 +36,7 @@ struct ByteOrderOptions {
   double least_log_ratio = 1;
 };
 
-/// Tests the byte order of a picture in up to 64 rows, evenly spread. A picture whose low byte is zero everywhere (8
+/// Tests the byte order of a picture in up to 64 evenly spaced rows. A picture whose low byte is zero everywhere (8
 /// bits shifted up) or whose high byte is zero everywhere (8 bits) is undecided, because both orders are equally
 /// smooth.
 [[nodiscard]] ByteOrderEvidence byte_order_evidence(const cv::Mat1w& counts, const ByteOrderOptions& options);
@@ -44,11 +44,11 @@ struct ByteOrderOptions {
 /// Byte order of the frames of a recording, taken together. One thread at a time.
 class ByteOrderWatch {
  public:
-  /// `significant_bits` of a count; with 8 or fewer no byte order is stated that could be wrong.
+  /// Adds a frame. `significant_bits` of a count; counts of 8 or fewer bits have no byte order.
   void see(const cv::Mat1w& counts, int significant_bits);
-  /// The order that frames show; `as_stated` for counts of one byte, and before the first frame.
+  /// Returns the byte order of the frames; `as_stated` for counts of one byte, and before the first frame.
   [[nodiscard]] ByteOrderVerdict verdict() const;
-  /// A sentence if one byte is zero in all examined pixels, so that no frame can show the order; otherwise empty.
+  /// Returns a sentence if one byte is zero in all examined pixels, so that no frame shows the order; otherwise empty.
   [[nodiscard]] std::string note() const;
 
  private:

@@ -16,14 +16,15 @@ struct CameraEntry {
   std::string id;  ///< "gige:VENDOR-SERIAL", "sim:sc2000", "file:PATH"
   std::string vendor, model, serial, transport;
   std::string address;  ///< present location; never part of the identity
-  std::string note{};   ///< one sentence if it cannot be opened as it is or cannot be identified again; otherwise empty
+  std::string note{};   ///< one sentence if it cannot be opened in this state or cannot be identified again; otherwise
+                        ///< empty
 };
 
-/// A family of cameras. To add one, implement list() and open().
+/// A back end for one family of cameras. To add one, implement list() and open().
 class CameraBackend {
  public:
   virtual ~CameraBackend() = default;
-  /// Prefix of its ids, without the colon: "gige".
+  /// Returns the prefix of its ids, without the colon: "gige".
   [[nodiscard]] virtual std::string scheme() const = 0;
   /// Lists the cameras that can be opened now. Takes up to two seconds on a network.
   [[nodiscard]] virtual Result<std::vector<CameraEntry>> list() = 0;
@@ -41,7 +42,7 @@ class CameraRegistry {
     std::vector<std::string> warnings;
   };
   [[nodiscard]] Listing list();
-  /// Opens by id. Error: `invalid_input`, with the known schemes, for an id without a known scheme.
+  /// Opens by id. Error: `invalid_input`, with the known schemes, if the id has no known scheme.
   [[nodiscard]] Result<std::unique_ptr<FrameSource>> open(const std::string& id);
 
  private:

@@ -9,12 +9,12 @@
 
 namespace todbench {
 
-/// The finite number that the whole text represents; empty for any other text.
+/// Returns the finite number that the whole text represents; empty for any other text.
 [[nodiscard]] std::optional<double> control_number(std::string_view text);
-/// The shortest text that control_number() reads back as the same number.
+/// Returns the shortest text that control_number() reads back as the same number.
 [[nodiscard]] std::string control_text(double value);
 
-/// Width and height of a text like "640x512"; empty for other texts or a side outside 1 ... 65535.
+/// Returns width and height of a text like "640x512"; empty for other texts or a side outside 1 ... 65535.
 [[nodiscard]] std::optional<cv::Size> frame_size_of(std::string_view text);
 [[nodiscard]] std::string frame_size_text(cv::Size size);
 

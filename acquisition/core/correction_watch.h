@@ -22,24 +22,25 @@ enum class CorrectionSign {
 };
 [[nodiscard]] std::string_view to_string(CorrectionSign sign);
 
-/// Limits of CorrectionWatch.
+/// Thresholds of CorrectionWatch.
 struct CorrectionWatchOptions {
-  /// Number of equal successive frames, the first included, that counts as a shutter.
+  /// Number of equal successive frames, the first included, that counts as a frozen picture.
   int frozen_frames = 3;
-  /// Level jump, in units of the usual difference of successive frames (1.01 standard deviations for white noise).
+  /// Level jump, in units of the median difference of successive frames (1.01 standard deviations for white noise).
   double level_jump = 2;
-  /// Ratio of the difference of two frames to the usual one. A change of the fixed pattern by f standard deviations of
-  /// temporal noise gives sqrt(1 + f^2 / 2): 1.3 detects f = 1.2. White noise scatters by 1.2 % (5000 pixels). If the
-  /// noise is below 1.5 counts, changes below 2 counts are not detected.
+  /// Ratio of the difference of two frames to the median difference. A change of the fixed pattern by f standard
+  /// deviations of temporal noise gives sqrt(1 + f^2 / 2): 1.3 detects f = 1.2. White noise scatters by 1.2 % (5000
+  /// pixels). If the noise is below 1.5 counts, changes below 2 counts are not detected.
   double pattern_ratio = 1.3;
-  /// A picture is without structure if its range (1st to 99th percentile) is below this share of the usual range.
+  /// A picture is without structure if its range (1st to 99th percentile) is below this share of the largest range so
+  /// far.
   double shutter_range_ratio = 0.5;
-  /// Comparisons that are kept, and needed before a sign is reported; the usual difference is their median.
+  /// Number of comparisons that are kept for the median difference, and that are required before a sign is reported.
   int history = 15;
 };
 
 /// Compares every frame with the one before it, pixel by pixel, over about 5000 pixels. Differences are trimmed at
-/// their 95th percentile, so that edges that move a little or a few flickering pixels do not count as a correction. One
+/// their 95th percentile, so that slightly moving edges and a few flickering pixels do not count as a correction. One
 /// thread at a time.
 class CorrectionWatch {
  public:
@@ -50,7 +51,7 @@ class CorrectionWatch {
   [[nodiscard]] std::optional<CorrectionSign> see(const Frame& frame);
   /// Same for a frame that is bit-identical to the one before it.
   [[nodiscard]] std::optional<CorrectionSign> see_frozen();
-  /// Reports a change of the scene: the next frame is not compared.
+  /// Announces a change of the scene: the next frame is not compared.
   void scene_changed();
 
  private:

@@ -29,10 +29,10 @@ enum class CorrectionState {
 
 /// Origin of a frame's sequence number.
 enum class Numbering : std::uint8_t {
-  counted,    ///< from the numbers of the camera or its driver, which fit the elapsed time
+  counted,    ///< from the numbers of the camera or its driver, which agree with the elapsed time
   restarted,  ///< the numbers restarted or jumped against all clocks; the loss is estimated from time
-  timed,      ///< the numbers continue, the time does not; the loss is estimated from time
-  unread,     ///< as counted; frames before this one were lost because the program had left every buffer full
+  timed,      ///< the numbers are consecutive, but time is missing; the loss is estimated from time
+  unread,     ///< as counted; frames before this one were lost because the program had filled every buffer
 };
 
 [[nodiscard]] std::string_view to_string(Numbering numbering);
@@ -51,10 +51,12 @@ struct Frame {
   double since_correction_s = -1;                         ///< as reported by the camera; negative: not reported
   int significant_bits = 16;                              ///< full scale is 2^significant_bits - 1 counts
   std::shared_ptr<const RadiometricScale> scale;          ///< never null
-  std::shared_ptr<const JudgedPicture> judged{};          ///< picture to judge instead of the counts; null: the counts
+  std::shared_ptr<const JudgedPicture> judged{};  ///< picture that is judged instead of the counts; null: the counts
+                                                  ///< are judged
 };
 
-/// Returns the frame in kelvin. Error: `calibration` if the scale has no temperature for some pixel.
+/// Returns the temperatures of the frame in kelvin. Error: `calibration` if the scale has no temperature for some
+/// pixel.
 [[nodiscard]] Result<cv::Mat1d> to_kelvin(const Frame& frame);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts frame numbers of cameras and drivers to an exposure count that never wraps; checked against time.
+// Converts frame numbers of cameras and drivers to an exposure count that never wraps. Checks the numbers against time.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +21,12 @@ enum class FrameNumberKind {
 
 /// Number and times of a frame at its arrival.
 struct FrameStamp {
-  std::optional<std::uint64_t> number;  ///< empty: lost with its packet
+  std::optional<std::uint64_t> number;  ///< empty: lost together with its packet
   std::int64_t device_time_ns = 0;      ///< on the clock of the camera or driver; 0: none
   std::int64_t host_time_ns = 0;        ///< CLOCK_MONOTONIC at arrival
   bool may_pause = false;               ///< the camera corrects itself: it may be silent without losing exposures
-  bool after_unread = false;  ///< since the last frame, others were lost because every buffer of the program was full
+  bool after_unread = false;  ///< other frames were lost since the last one because every buffer of the program was
+                              ///< full
 };
 
 /// Frame::sequence and its origin.
@@ -38,9 +39,9 @@ struct FramePlace {
 /// Converts frame numbers to Frame::sequence: 0 for the first frame of a stream, gaps for lost exposures.
 ///
 /// Numbers are trusted unless the clocks contradict them. A number that goes back, or ahead by far more than the
-/// elapsed time, indicates a restart. Consecutive numbers over a time of several frames hide a loss (Aravis silently
-/// drops up to a hundred frames whose ids it has already received). The gap is then estimated from the camera's clock
-/// if it agrees with the host's, otherwise from the host's.
+/// elapsed time, indicates a restart. Consecutive numbers over several frame periods hide a loss (Aravis silently drops
+/// up to a hundred frames whose ids it has already received). The gap is then estimated from the camera's clock if it
+/// agrees with the host's clock, otherwise from the host's clock.
 ///
 /// Frames must be given in the order in which the transport completed them. One thread at a time.
 class FrameSequence {
@@ -48,11 +49,11 @@ class FrameSequence {
   /// `frame_rate_hz` as the camera states it; 0: unknown.
   FrameSequence(FrameNumberKind kind, double frame_rate_hz);
 
-  /// Returns the place of a frame. A frame without number gets the place after the last one: its true place is that one
-  /// or later, because the numbers of its neighbours differ from its own. 16-bit numbers are unwrapped over gaps of up
-  /// to 32767 frames (ten minutes at 50 Hz). A frame that is older by number and by the camera's clock gets its older
-  /// place. A counted gap before a frame with `after_unread`, or before the next one (a frame may have been under way
-  /// when others found no buffer), is `unread`.
+  /// Returns the place of a frame. A frame without a number gets the place after the last frame; its true place is this
+  /// one or a later one. 16-bit numbers are unwrapped over gaps of up to 32767 frames (ten minutes at 50 Hz). A frame
+  /// that is older according to its number and the camera's clock gets its older place. A counted gap before a frame
+  /// with `after_unread` is `unread`. So is a gap before the following frame, because a frame may have been in transfer
+  /// when the buffers were full.
   [[nodiscard]] FramePlace next(const FrameStamp& as_told);
 
  private:
@@ -61,30 +62,30 @@ class FrameSequence {
     std::uint64_t number = 0, sequence = 0;
     std::int64_t device_time_ns = 0, host_time_ns = 0;
   };
-  /// Frame periods from the anchor to a frame, by each clock; empty if the clock gives no time.
+  /// Frame periods from the anchor to a frame, by each clock; empty if the clock states no time.
   struct Elapsed {
     std::optional<double> device, host;
     double period_ns = 0;  ///< of the host's clock
-    /// The period count from which to estimate a gap after a restart: the camera's clock, unless far more periods
-    /// passed on the host's clock, because then the camera's clock restarted too.
+    /// Returns the number of periods from which to estimate a gap after a restart. It is taken from the camera's clock,
+    /// unless the host's clock counts far more periods: then the camera's clock restarted too.
     [[nodiscard]] std::optional<double> best() const;
   };
-  /// Frame period on the camera's clock: the median of the observed ones.
+  /// Frame period on the camera's clock: the median of the observed periods.
   class DevicePeriod {
    public:
     explicit DevicePeriod(double stated_ns) : stated_ns_(stated_ns) {}
     void learn(double ns);
     void forget();
     [[nodiscard]] std::optional<double> ns() const;
-    /// Scatter of the frame period, in periods.
+    /// Returns the scatter of the frame period, in periods.
     [[nodiscard]] double scatter() const;
 
    private:
     double stated_ns_;
     std::deque<double> seen_ns_;
   };
-  /// Frame period on the host's clock, on which single frames arrive early and late: the stated period unless the mean
-  /// of the observed ones contradicts it, otherwise that mean.
+  /// Frame period on the host's clock, on which single frames arrive early or late. It is the stated period, unless the
+  /// mean of the observed periods contradicts it; then it is this mean.
   class HostPeriod {
    public:
     explicit HostPeriod(double stated_ns) : stated_ns_(stated_ns) {}
@@ -104,7 +105,7 @@ class FrameSequence {
   struct Silence {
     double missing = 0;  ///< periods
     std::int64_t host_time_ns = 0;
-    int frames = 0;  ///< since then
+    int frames = 0;  ///< frames since the silence
   };
 
   [[nodiscard]] FramePlace place_of(const FrameStamp& as_told);
@@ -123,7 +124,7 @@ class FrameSequence {
   DevicePeriod device_period_;
   HostPeriod host_period_;
   bool started_ = false;
-  bool after_unread_ = false;  ///< of the last frame, if it had no gap
+  bool after_unread_ = false;  ///< FrameStamp::after_unread of the last frame, if no gap preceded it
   std::optional<Anchor> anchor_;
   std::uint64_t last_ = 0;
   std::optional<double> last_gap_;  ///< device periods, if the last frame hid a gap

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interface of a camera: simulated, recorded, emulated or real.
+// Interface of a camera: simulated, recorded, emulated or physical.
 #pragma once
 
 #include <chrono>
@@ -25,11 +25,11 @@ struct SourceInfo {
   double frame_rate_hz = 0;  ///< 0: unknown
   RadiometricScale scale;
   std::map<std::string, std::string> settings;  ///< feature -> value read back, for provenance
-  std::vector<std::string> warnings;  ///< one sentence each, e.g. for a socket buffer that the system did not grant
+  std::vector<std::string> warnings;  ///< one sentence each, e.g. if the system did not grant the socket buffer
 };
 
-/// Frames in order of exposure. Created stopped. One thread at a time, except stop(), which any thread may call.
-/// After an error `disconnected` the source is dead: destroy it and open a new one.
+/// A source of frames in order of exposure. It is created stopped. One thread at a time, except stop(), which any
+/// thread may call. After an error `disconnected` the source is dead: destroy it and open a new one.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;

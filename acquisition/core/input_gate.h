@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Integrity check before a number is computed from the frames of a file.
+// Integrity check of the frames of a file before a result is computed from them.
 #pragma once
 
 #include <cstdint>
@@ -15,26 +15,26 @@
 
 namespace todbench {
 
-/// Judges the damages that a gate counted in so many frames, each alone. Error: `integrity` if more than 1 % of the
-/// frames have one of `damages`.
+/// Judges the numbers of damaged frames that a gate counted in `frames`, each kind of damage alone. Error: `integrity`
+/// if more than 1 % of the frames have one of `damages`.
 [[nodiscard]] Result<void> judge_damages(const std::map<Rejection, std::uint64_t>& rejected, std::uint64_t frames,
                                          std::span<const Rejection> damages);
 
-/// Judges every frame of a recording of a static scene in order. Repeated frames, gaps and pixels at an end of the
-/// counts are left to the caller, who knows their effect on the number.
+/// Judges every frame of a recording of a static scene in order. The caller judges repeated frames, gaps and saturated
+/// pixels, because it knows their effect on the result.
 class InputGate {
  public:
-  /// Returns whether the frame is a valid exposure, new or a repetition of the previous one.
+  /// Returns true if the frame is a valid exposure: a new one or a repetition of the previous one.
   [[nodiscard]] bool takes(const Frame& frame);
   /// Returns the result; call it after the last frame. Errors: `integrity` if more than 1 % of the frames are damaged.
   /// A valid recording passes: less than one frame in 10^6 appears byte-swapped, rearranged or equal to an older one by
   /// chance.
   [[nodiscard]] Result<void> verdict() const;
-  /// Returns a sentence about the frames left out of a recording that passes; empty if there are none.
+  /// Returns a sentence about the frames that were left out of a recording that passes; empty if there are none.
   [[nodiscard]] std::string note() const;
   /// Returns a sentence if the camera sends each exposure several times; otherwise empty.
   [[nodiscard]] std::string cadence() const { return cadence_.sentence(); }
-  /// Byte order of all frames that are not incomplete or damaged.
+  /// Returns the byte order of all frames that are not incomplete or damaged.
   [[nodiscard]] const ByteOrderWatch& byte_order() const { return byte_order_; }
 
  private:

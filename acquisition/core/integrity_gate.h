@@ -17,12 +17,12 @@ namespace todbench {
 enum class Rejection {
   incomplete,                ///< reported by the transport
   wrong_size,                ///< differs from the geometry of the source
-  repeated,                  ///< the last sequence number again, or the pixels of an earlier recent frame
-  out_of_order,              ///< a sequence number below the last one
-  gapped,                    ///< exposures are missing directly before it
-  frozen,                    ///< bit-identical to the frame before it (shutter, stuck transfer)
-  saturated,                 ///< more than the allowed share of pixels at zero or full scale
-  byte_swapped,              ///< the picture shows that its bytes are in the other order
+  repeated,                  ///< the last sequence number again, or the same pixels as an earlier recent frame
+  out_of_order,              ///< the sequence number is below the last one
+  gapped,                    ///< exposures are missing directly before this frame
+  frozen,                    ///< bit-identical to the preceding frame (shutter, stuck transfer)
+  saturated,                 ///< more than the permitted share of pixels at zero or full scale
+  byte_swapped,              ///< the picture shows that its bytes are swapped
   nonuniformity_correction,  ///< during or shortly after a correction
 };
 inline constexpr Rejection all_rejections[] = {
@@ -32,16 +32,16 @@ inline constexpr Rejection all_rejections[] = {
 
 [[nodiscard]] std::string_view to_string(Rejection reason);
 
-/// Inconsistencies of the frame numbers, and losses that the program caused.
+/// Inconsistencies of the frame numbers, and losses caused by the program.
 struct NumberingFaults {
   std::uint64_t restarts = 0;        ///< Numbering::restarted
   std::uint64_t silent_gaps = 0;     ///< Numbering::timed
-  std::uint64_t estimated_lost = 0;  ///< exposures missing in both cases; included in lost()
-  std::uint64_t unread = 0;          ///< exposures missing before Numbering::unread; included in lost()
+  std::uint64_t estimated_lost = 0;  ///< missing exposures in both cases; included in lost()
+  std::uint64_t unread = 0;          ///< missing exposures before Numbering::unread; included in lost()
   bool operator==(const NumberingFaults&) const = default;
 };
 
-/// One sentence about the faults; empty if there are none.
+/// Returns one sentence about the faults; empty if there are none.
 [[nodiscard]] std::string describe(const NumberingFaults& faults);
 
 /// Options of IntegrityGate.
@@ -56,19 +56,22 @@ struct IntegrityOptions {
 class IntegrityGate {
  public:
   explicit IntegrityGate(IntegrityOptions options);
-  /// Returns the first reason to reject the frame; empty if it may be measured. Counts it in both cases.
+  /// Returns the first reason to reject the frame; empty if it may be measured. Counts the frame in both cases.
   [[nodiscard]] std::optional<Rejection> judge(const Frame& frame);
   /// Revokes the acceptance of the last frame for a reason that only the caller knows (time since a correction).
   void reject_accepted(Rejection reason);
-  /// Counts the frame that judge() has just rejected for `from` under another reason, which only the caller knows.
+  /// Moves the frame that judge() has just rejected from the reason `from` to the reason `to`, which only the caller
+  /// knows.
   void recount(Rejection from, Rejection to);
 
   [[nodiscard]] std::uint64_t accepted() const { return accepted_; }
   [[nodiscard]] std::uint64_t rejected() const;
   [[nodiscard]] const std::map<Rejection, std::uint64_t>& rejected_by_reason() const { return rejected_; }
-  /// Exposures that never arrived: the sum of the gaps in the sequence, including NumberingFaults::unread.
+  /// Returns the number of exposures that never arrived: the sum of the gaps in the sequence, including
+  /// NumberingFaults::unread.
   [[nodiscard]] std::uint64_t lost() const { return lost_; }
-  /// Inconsistencies of the camera's numbers with the elapsed time, and the part of lost() that is estimated from time.
+  /// Returns the inconsistencies between the camera's numbers and the elapsed time, and the part of lost() that is
+  /// estimated from time.
   [[nodiscard]] const NumberingFaults& numbering() const { return numbering_; }
 
  private:

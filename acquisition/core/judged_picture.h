@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The picture of a frame that is judged after processing stages behind the camera.
+// The picture that is judged instead of a frame, after processing stages behind the camera.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -10,19 +10,19 @@
 
 namespace todbench {
 
-/// The output of the stages for a frame, on its scale; it is judged in place of the counts.
+/// The output of the stages for a frame, on its scale. It is judged instead of the counts.
 struct JudgedPicture {
   cv::Mat1w counts;
-  int samples_per_pixel = 1;             ///< along each axis
-  cv::Point2d first_px = {0, 0};         ///< position of sample (0, 0), in pixels of the frame
-  cv::Mat1b cut_off{};                   ///< not 0: the output of the stages was outside the counts; empty: nowhere
+  int samples_per_pixel = 1;      ///< along each axis
+  cv::Point2d first_px = {0, 0};  ///< position of sample (0, 0), in pixels of the frame
+  cv::Mat1b cut_off{};  ///< not 0: the output of the stages was outside the range of counts; empty: no such pixel
   std::optional<cv::Point2d> scan_px{};  ///< displacement of the frame that a stage assumes; empty: none
-  std::optional<Error> none{};           ///< why this frame has no picture and must not be judged
+  std::optional<Error> none{};           ///< reason why this frame has no picture and must not be judged
 };
 
 /// Returns the frame with its judged picture as counts.
 [[nodiscard]] Frame as_judged(Frame frame);
-/// Samples per pixel and axis of the judged picture; 1: pixels.
+/// Returns the samples per pixel and axis of the judged picture; 1 if samples are pixels.
 [[nodiscard]] int judged_samples_per_pixel(const Frame& frame);
 /// Converts a position in the frame, in pixels, to samples of the judged picture.
 [[nodiscard]] cv::Point2d judged_place(const Frame& frame, cv::Point2d place_px);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Detects pictures of a still scene that were read from a wrong start: cyclically shifted, rotated or mirrored.
+// Detects pictures of a still scene that were read from a wrong start position: cyclically shifted, rotated or
+// mirrored.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -8,17 +9,17 @@
 
 namespace todbench {
 
-/// Compares each picture with the last one that had the position of the first. Temporal noise of independent pixels
-/// gives a mean absolute difference d of two pictures, which no rearrangement of one of them reduces. A rearranged
-/// picture differs by more than d, and by d again when the rearrangement is undone. At least 4000 pixels are compared,
-/// so d scatters by 0.76 / sqrt(4000) = 1.2 %, and the minimum over 4000 rearrangements is above 1 - 4.5 * 1.2 % = 0.95
-/// of d. A ratio below 0.8 is therefore not noise. Only rearrangements that raise d by a quarter are detected: in a
-/// flat field without fixed pattern they change nothing. Pictures of fewer than 1000 pixels are not judged. One thread
-/// at a time.
+/// Compares each picture with the last one that was in the same position as the first. Two pictures with independent
+/// temporal noise have a mean absolute difference d, which no rearrangement of one of them reduces. A rearranged
+/// picture differs by more than d; after the rearrangement is undone it differs by d again. At least 4000 pixels are
+/// compared, so d scatters by 0.76 / sqrt(4000) = 1.2 %, and the minimum over 4000 rearrangements is above 1 - 4.5 *
+/// 1.2 % = 0.95 of d. A ratio below 0.8 is therefore not noise. Only rearrangements that raise d by a quarter are
+/// detected; in a flat field without fixed pattern they have no effect. Pictures of fewer than 1000 pixels are not
+/// judged. One thread at a time.
 class MovedPicture {
  public:
-  /// Describes the displacement from the reference ("it wraps around vertically, shifted by 40 px"); empty if there is
-  /// none.
+  /// Returns a description of the displacement from the reference ("it wraps around vertically, shifted by 40 px");
+  /// empty if there is none.
   [[nodiscard]] std::optional<std::string> see(const cv::Mat1w& counts);
 
  private:

@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Temperature unknown. Contrasts stay in counts; measurements in kelvin are refused.
+/// An unknown relation to temperature. Contrasts stay in counts; measurements in kelvin are refused.
 struct Uncalibrated {
   bool operator==(const Uncalibrated&) const = default;
 };
@@ -23,7 +23,7 @@ struct LinearScale {
   bool operator==(const LinearScale&) const = default;
 };
 
-/// A measured signal transfer function: strictly increasing counts, increasing temperatures, linear between points.
+/// A measured signal transfer function with strictly increasing counts and temperatures, linear between its points.
 struct TableScale {
   std::vector<double> counts;
   std::vector<double> temperature_k;
@@ -36,30 +36,31 @@ struct PlanckScale {
   bool operator==(const PlanckScale&) const = default;
 };
 
-/// Relation between the counts of a frame and temperature. A value; thread-safe.
+/// Relation between the counts of a frame and temperature. A value type; thread-safe.
 class RadiometricScale {
  public:
   RadiometricScale() = default;
-  /// Error: `calibration` if the numbers are not a scale (slope zero or not finite, table not increasing).
+  /// Create a scale. Error: `calibration` if the numbers do not define a scale (slope zero or not finite, table not
+  /// increasing).
   [[nodiscard]] static Result<RadiometricScale> linear(LinearScale scale);
   [[nodiscard]] static Result<RadiometricScale> table(TableScale scale);
   [[nodiscard]] static Result<RadiometricScale> planck(PlanckScale scale);
 
   [[nodiscard]] bool calibrated() const { return !std::holds_alternative<Uncalibrated>(scale_); }
-  /// Temperature in kelvin; empty outside the scale (uncalibrated, outside the table, S <= O).
+  /// Returns the temperature in kelvin; empty outside the scale (uncalibrated, outside the table, S <= O).
   [[nodiscard]] std::optional<double> kelvin(double counts) const;
-  /// The scale as a straight line, for loops over whole frames; null if it is not linear.
+  /// Returns the scale as a straight line, for loops over whole frames; null if it is not linear.
   [[nodiscard]] const LinearScale* straight_line() const { return std::get_if<LinearScale>(&scale_); }
-  /// Counts (not rounded) of a temperature; the inverse of kelvin().
+  /// Returns the counts (not rounded) of a temperature: the inverse of kelvin().
   [[nodiscard]] std::optional<double> counts(double temperature_k) const;
-  /// Slope in kelvin per count at `counts`.
+  /// Returns the slope in kelvin per count at `counts`.
   [[nodiscard]] std::optional<double> kelvin_per_count(double counts) const;
-  /// "0.01 K/count", "table of 7 points", ...: for reports.
+  /// Returns a text for reports: "0.01 K/count", "table of 7 points", ...
   [[nodiscard]] std::string describe() const;
   bool operator==(const RadiometricScale&) const = default;
 
   using Parameters = std::variant<Uncalibrated, LinearScale, TableScale, PlanckScale>;
-  /// The parameters, for storage.
+  /// Returns the parameters, for storage.
   [[nodiscard]] const Parameters& parameters() const { return scale_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Detects cameras that send each exposure several times: 60 frames a second from a sensor that exposes 30.
+// Detects cameras that send each exposure several times, e.g. 60 frames per second from a sensor that exposes 30.
 #pragma once
 
 #include <cstdint>
@@ -8,19 +8,19 @@
 
 namespace todbench {
 
-/// Learns how often each exposure is sent from frames that equal their predecessor bit for bit. With noise no two
-/// exposures are equal, so a rhythm over 8 exposures does not arise by chance; a camera that is stuck has no rhythm.
-/// One thread at a time.
+/// Learns how often a camera sends each exposure, from frames that equal their predecessor bit for bit. With noise no
+/// two exposures are equal, so a rhythm over 8 exposures does not arise by chance. A camera that is stuck has no
+/// rhythm. One thread at a time.
 class RepeatCadence {
  public:
   void see(bool equals_the_last);
-  /// Frames per exposure; 1: one, or not known yet.
+  /// Returns the frames per exposure; 1 also while the number is not known yet.
   [[nodiscard]] int times() const { return times_; }
-  /// Whether the last frame fits the rhythm: its run is not longer than the others.
+  /// Returns whether the last frame fits the rhythm: its exposure was not sent more often than the others.
   [[nodiscard]] bool in_rhythm() const { return times_ > 1 && run_ <= times_; }
-  /// Frames in the rhythm that equal their predecessor, including those from which it was learnt.
+  /// Returns the number of frames in the rhythm that equal their predecessor, including those from which it was learnt.
   [[nodiscard]] std::uint64_t repeats() const { return repeats_; }
-  /// One sentence for the user; empty if each exposure is sent once.
+  /// Returns one sentence for the user; empty if each exposure is sent once.
   [[nodiscard]] std::string sentence() const;
 
  private:
