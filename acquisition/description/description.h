@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks the description of a GenICam camera before it is evaluated. A camera may state anything; the client that
-// evaluates descriptions (Aravis 0.8) follows every reference until the stack overflows, reserves memory by stated
-// lengths and divides by register values.
+// Checks the description of a GenICam camera before it is evaluated. A camera may state arbitrary contents. The client
+// that evaluates descriptions (Aravis 0.8) follows every reference until the stack overflows, allocates memory by
+// stated lengths and divides by register values.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@
 
 namespace todbench {
 
-/// Limits far above every published description: of 92, the longest chain has 19 references, the costliest value 442
-/// evaluations, the longest register 32 KiB, the longest formula 2043 characters.
+/// Limits far above all published descriptions. In 92 of them, the longest chain has 19 references, the costliest value
+/// needs 442 evaluations, the longest register has 32 KiB, and the longest formula has 2043 characters.
 inline constexpr std::size_t longest_reference_chain = 100;
 inline constexpr std::uint64_t most_evaluations = 10'000;
 inline constexpr std::int64_t longest_register_bytes = 64 * 1024;
@@ -27,19 +27,20 @@ class Description {
  public:
   explicit Description(std::string_view xml);
 
-  /// Reasons why the description must not be evaluated at all; empty: it is safe.
+  /// Returns the reasons why the description must not be evaluated at all; empty: it is safe.
   [[nodiscard]] const std::vector<DescriptionFault>& faults() const { return faults_; }
-  /// Reasons why this feature must not be evaluated: it depends on a node that does not exist (and would count as 0),
-  /// or on a division that traps the processor. Empty for a feature that does not exist.
+  /// Returns the reasons why this feature must not be evaluated: it depends on a node that does not exist (and would
+  /// count as 0) or on a division that can raise SIGFPE. Empty for a feature that does not exist.
   [[nodiscard]] std::vector<DescriptionFault> faults_of(const std::string& feature) const;
-  /// Nodes whose values, known only to the camera, are lengths of registers that this feature depends on; each node
-  /// after the nodes it depends on. Check that they are 1 ... 64 KiB before evaluating the feature.
+  /// Returns the nodes whose values are lengths of registers that this feature depends on and are known only to the
+  /// camera. Each node follows the nodes it depends on. Check that the values are 1 ... 64 KiB before evaluating the
+  /// feature.
   [[nodiscard]] std::vector<std::string> lengths_of(const std::string& feature) const;
 
  private:
   DescriptionNodes nodes_;
   std::vector<DescriptionFault> faults_;
-  std::vector<bool> trapping_;                  ///< by node
+  std::vector<bool> trapping_;                  ///< by node: whether its evaluation can raise SIGFPE
   std::vector<std::string> unbounded_lengths_;  ///< sorted
 };
 

@@ -10,18 +10,18 @@ namespace todbench {
 enum class DescriptionFaultKind {
   not_xml,          ///< not well-formed, or no RegisterDescription
   entities,         ///< has a document type, which may declare entities
-  too_large,        ///< more elements or text than any camera needs
-  two_of_one_name,  ///< two nodes of one name, so that references to it are ambiguous
+  too_large,        ///< more elements or text than any camera requires
+  two_of_one_name,  ///< two nodes of the same name, so that references to it are ambiguous
   cycle,            ///< a circular reference
-  too_deep,         ///< a chain of references longer than any camera needs
-  too_expensive,    ///< a value with more evaluations than any camera needs
+  too_deep,         ///< a chain of references longer than any camera requires
+  too_expensive,    ///< a value with more evaluations than any camera requires
   register_length,  ///< a register whose length is zero, negative or excessive
-  formula,          ///< longer than any camera needs
-  division,         ///< an integer division that may trap the processor
+  formula,          ///< longer than any camera requires
+  division,         ///< an integer division that can raise SIGFPE
   dangling,         ///< a reference to a node that does not exist
 };
 
-/// A fault and its place.
+/// A fault and its location.
 struct DescriptionFault {
   DescriptionFaultKind kind = DescriptionFaultKind::not_xml;
   std::string node;      ///< printable name; empty: the description as a whole

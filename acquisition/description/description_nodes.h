@@ -22,7 +22,7 @@ inline constexpr std::size_t most_description_pieces = 400'000;
 
 /// Kinds of nodes.
 enum class NodeKind {
-  other,        ///< Category, Port, Command, Converter and all elements without a rule of their own
+  other,        ///< Category, Port, Command, Converter and all other elements
   reg,          ///< Register, IntReg, MaskedIntReg, FloatReg, StringReg, StructReg
   entry,        ///< StructEntry: bits of its StructReg
   integer,      ///< Integer
@@ -59,7 +59,7 @@ struct DescriptionNode {
   NodeKind kind = NodeKind::other;
   std::vector<NodeReference> references;
   std::vector<std::size_t> parts;      ///< nodes inside a register or an enumeration that it reads
-  std::optional<std::size_t> inside;   ///< of an entry: its register
+  std::optional<std::size_t> inside;   ///< of an entry: the register that contains it
   std::vector<std::string> lengths;    ///< <Length>, as in the text
   std::vector<std::string> values;     ///< <Value>
   std::vector<std::string> formulas;   ///< Formula, FormulaTo, FormulaFrom

@@ -13,17 +13,18 @@
 
 namespace todbench {
 
-/// Parses an integer as in descriptions, decimal or after 0x. Later characters are ignored; 0 without a number.
+/// Parses an integer as in descriptions: decimal, or hexadecimal after 0x. Ignores later characters; returns 0 if there
+/// is no number.
 [[nodiscard]] std::int64_t whole_number(const std::string& text);
 
-/// Computes ranges of nodes without cycles. Caches its results and keeps a reference to the nodes.
+/// Computes the ranges of nodes without circular references. Caches its results and keeps a reference to the nodes.
 class DescriptionRanges {
  public:
   explicit DescriptionRanges(const DescriptionNodes& nodes) : nodes_(nodes), found_(nodes.nodes.size()) {}
 
-  /// Range of the values to which this name can refer.
+  /// Returns the range of the values to which this name can refer.
   [[nodiscard]] IntegerRange range_of(const std::string& name);
-  /// Whether a formula of the node can trap the processor and so end the program.
+  /// Returns whether a formula of the node can raise SIGFPE, which would end the program.
   [[nodiscard]] bool may_trap(const DescriptionNode& node);
 
  private:

@@ -10,8 +10,8 @@
 
 namespace todbench {
 
-/// Largest description that is read from a camera, also after unzipping. Real cameras have 20 kB ... 3 MB; the client
-/// reserves the stated size before it has read a byte.
+/// Largest description that is read from a camera, also after unzipping. Real cameras have 20 kB ... 3 MB. The client
+/// allocates the stated size before it reads the first byte.
 inline constexpr std::uint64_t most_description_bytes = 16U << 20U;
 
 /// Location of a description.
@@ -23,7 +23,7 @@ struct DescriptionUrl {
   Place place = Place::camera;
   std::uint32_t address = 0;
   std::uint32_t bytes = 0;
-  std::string path;     ///< in the camera: the name whose extension shows whether it is zipped
+  std::string path;     ///< in the camera: the file name; its extension shows whether the content is zipped
   bool zipped = false;  ///< always false for files
 };
 

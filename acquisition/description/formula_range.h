@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Range of the integer values of a formula of a GenICam description, and whether its evaluation can trap.
+// Range of the integer values of a formula of a GenICam description, and whether its evaluation can raise SIGFPE.
 //
 // The processor raises SIGFPE if the smallest 64-bit integer is divided by -1, and the client (Aravis' evaluator)
-// divides without a check. The analysis is sound for the client's grammar: parts that are not understood may have any
-// value.
+// divides without a check. The analysis is conservative for the client's grammar: it assumes any value for parts that
+// it cannot analyse.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct IntegerRange {
 /// Meaning of the operators in a formula.
 enum class FormulaMode {
   whole,  ///< IntSwissKnife: / and % are integer operations
-  real,   ///< all others: only % is
+  real,   ///< all other formulas: only % is an integer operation
 };
 
 /// Range of a formula.
@@ -33,7 +33,7 @@ struct FormulaRange {
   bool may_trap = false;
 };
 
-/// Returns the range of a name in a formula; all integers if unknown.
+/// Function that returns the range of a name in a formula; all integers if unknown.
 using RangeOfName = std::function<IntegerRange(const std::string& name)>;
 
 /// Returns the range of the formula. Time is proportional to its length.
