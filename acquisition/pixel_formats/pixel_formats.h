@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Table of the known pixel formats; conversion between bytes as cameras send them and 16-bit counts. Pure functions;
-// sizes are checked, the bytes are not trusted.
+// Table of the known pixel formats, and conversion between the bytes that cameras send and 16-bit counts. Pure
+// functions over untrusted bytes; sizes are checked.
 #pragma once
 
 #include <cstddef>
@@ -22,9 +22,9 @@ enum class PixelFormat {
   mono12,         ///< two bytes, the low 12 bits
   mono14,         ///< two bytes, the low 14 bits
   mono16,         ///< two bytes
-  yuyv,           ///< two bytes: the luma of the pixel, then a dropped byte
-  mono10p,        ///< PFNC: 10 bits after 10 bits, the lowest bit first
-  mono12p,        ///< PFNC: 12 bits after 12 bits, the lowest bit first
+  yuyv,           ///< two bytes: the luma of the pixel, then a byte that is ignored
+  mono10p,        ///< PFNC: consecutive groups of 10 bits, the lowest bit first
+  mono12p,        ///< PFNC: consecutive groups of 12 bits, the lowest bit first
   mono10_packed,  ///< GigE Vision: two pixels in three bytes, the middle byte contains the low bits of both
   mono12_packed,  ///< GigE Vision: likewise with 12 bits
 };
@@ -40,7 +40,7 @@ struct PixelFormatFacts {
   int bits_per_pixel;    ///< bits that a pixel occupies
 };
 
-/// The formats that the back ends read and the emulated cameras send.
+/// The formats that the back ends read and that the emulated cameras send.
 inline constexpr PixelFormatFacts pixel_format_table[] = {
     {PixelFormat::mono8, "Mono8", 0x01080001, "GREY", 8, 8},
     {PixelFormat::mono10, "Mono10", 0x01100003, "Y10 ", 10, 16},
@@ -61,7 +61,7 @@ inline constexpr PixelFormatFacts pixel_format_table[] = {
   return pixel_format_table[0];  // not reached: every format has a line
 }
 
-/// Bytes of `pixels` pixels one after another; the last byte of a packed format may be used in part.
+/// Returns the number of bytes of `pixels` consecutive pixels; the last byte of a packed format may be partly used.
 [[nodiscard]] constexpr std::size_t bytes_of_pixels(PixelFormat format, std::size_t pixels) {
   return (pixels * static_cast<std::size_t>(facts_of(format).bits_per_pixel) + 7) / 8;
 }
@@ -69,11 +69,11 @@ inline constexpr PixelFormatFacts pixel_format_table[] = {
 /// Byte order of pixels with two bytes of counts (mono10, 12, 14, 16); the other formats ignore it.
 enum class ByteOrder { little_endian, big_endian };
 
-/// PFNC name, e.g. "Mono14"; "YUV422_8" for yuyv.
+/// Returns the PFNC name, e.g. "Mono14"; "YUV422_8" for yuyv.
 [[nodiscard]] constexpr std::string_view to_string(PixelFormat format) {
   return facts_of(format).name;
 }
-/// Conversion to and from the PFNC code.
+/// Convert to and from the PFNC code.
 [[nodiscard]] constexpr std::uint32_t pfnc_code(PixelFormat format) {
   return facts_of(format).pfnc;
 }
@@ -88,10 +88,10 @@ struct FourccFormat {
   ByteOrder order;
   bool operator==(const FourccFormat&) const = default;
 };
-/// Recognises "Y16 ", "Y16 " with bit 31 set (big-endian, listed as "Y16 -BE"), "Y14 ", "Y12 ", "Y10 ", "GREY", "YUYV";
-/// empty for any other code. The code is v4l2_fourcc(): first character in the low byte.
+/// Returns the format of "Y16 ", "Y16 " with bit 31 set (big-endian, listed as "Y16 -BE"), "Y14 ", "Y12 ", "Y10 ",
+/// "GREY", "YUYV"; empty for any other code. The code is v4l2_fourcc(): first character in the low byte.
 [[nodiscard]] std::optional<FourccFormat> format_of_fourcc(std::uint32_t fourcc);
-/// The code of a format, little-endian if it has a byte order; 0: none.
+/// Returns the code of a format, little-endian if the format has a byte order; 0: none.
 [[nodiscard]] std::uint32_t fourcc_code(PixelFormat format);
 
 /// A picture in memory.
@@ -99,32 +99,33 @@ struct PixelLayout {
   PixelFormat format = PixelFormat::mono16;
   ByteOrder order = ByteOrder::little_endian;
   int width = 0, height = 0;  ///< pixels, 1 ... 65535
-  /// Bytes from the start of a row to the start of the next. 0: rows without gaps; rows of a packed format then share
-  /// a byte if they do not fill whole ones.
+  /// Distance between the starts of two rows in bytes. 0: rows without gaps; neighbouring rows of a packed format then
+  /// share a byte if they do not fill whole bytes.
   std::size_t row_bytes = 0;
 };
 
-/// Bytes that a picture needs. Error: `invalid_input` (impossible geometry, rows shorter than their pixels).
+/// Returns the number of bytes of a picture. Error: `invalid_input` (impossible geometry, rows shorter than their
+/// pixels).
 [[nodiscard]] Result<std::size_t> picture_bytes(const PixelLayout& layout);
 
 /// Returns the counts of a picture unchanged: bits above significant_bits() in two-byte formats are kept for the
 /// integrity gate. Excess bytes are ignored. Errors: `invalid_input` as picture_bytes(), or too few bytes.
 [[nodiscard]] Result<cv::Mat1w> decode_pixels(std::span<const std::uint8_t> bytes, const PixelLayout& layout);
 
-/// The inverse of decode_pixels(), for devices that send pictures; padding and dropped bytes are zero (128, no colour,
-/// for yuyv). Returns exactly picture_bytes(). Errors: `invalid_input` as picture_bytes(), a picture of another size,
-/// or a pixel that exceeds significant_bits().
+/// Encodes a picture for a device that sends it: the inverse of decode_pixels(). Padding and ignored bytes are zero
+/// (for yuyv 128, no colour). Returns exactly picture_bytes(). Errors: `invalid_input` as picture_bytes(), a picture of
+/// another size, or a pixel that exceeds significant_bits().
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_pixels(const cv::Mat1w& counts, const PixelLayout& layout);
 
-/// Rows of a frame with a separate meaning: picture for display, temperatures, telemetry.
+/// Rows of a frame with a separate meaning: display picture, temperatures or telemetry.
 struct RowSection {
   int first = 0, count = 0;
 };
 
-/// Returns the bytes of a section of a frame of two-byte pixels, for separate decoding. Cameras of the InfiRay class
-/// send 256 x 384 YUYV whose rows 192 ... 383 are 256 x 192 temperatures of 16 bits, little-endian; telemetry rows of a
-/// Lepton have 16 bits like its picture. `row_bytes` as in PixelLayout, but not 0. Error: `invalid_input` if the
-/// section exceeds the bytes.
+/// Returns the bytes of a section of a frame of two-byte pixels, so that the section can be decoded alone. Example:
+/// cameras of the InfiRay class send 256 x 384 YUYV whose rows 192 ... 383 are 256 x 192 temperatures of 16 bits,
+/// little-endian. Telemetry rows of a Lepton have 16 bits like its picture. `row_bytes` as in PixelLayout, but not 0.
+/// Error: `invalid_input` if the section exceeds the bytes.
 [[nodiscard]] Result<std::span<const std::uint8_t>> section_bytes(std::span<const std::uint8_t> frame,
                                                                   std::size_t row_bytes, RowSection section);
 
