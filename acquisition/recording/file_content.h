@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kind of a file, by its first bytes. File names are not used, because cameras and programs use one suffix for several
-// formats.
+// Kind of a file, determined by its first bytes. File names are not used, because cameras and programs use one suffix
+// for several formats.
 #pragma once
 
 #include <filesystem>
@@ -10,21 +10,21 @@ namespace todbench {
 
 /// Kinds of files that are offered as recordings.
 enum class FileKind {
-  frame_stream,  ///< of the bench
+  frame_stream,  ///< a recording of the bench
   flir,          ///< FFF records or a JPEG picture, which may contain one
   tiff,
   foreign,  ///< a known format that is not read as a recording
-  unknown,  ///< no known first bytes: raw counts, or damage
+  unknown,  ///< no known first bytes: raw counts, or a damaged file
 };
 
 /// Content of a file.
 struct FileContent {
   FileKind kind = FileKind::unknown;
   std::string name{};   ///< of a foreign format, with its article: "a PNG picture"
-  std::string start{};  ///< the first bytes of an unknown one, as hexadecimal digits
+  std::string start{};  ///< the first bytes of an unknown file, as hexadecimal digits
 };
 
-/// Reads the first bytes. A file that cannot be read is unknown; opening it gives the reason.
+/// Reads the first bytes. An unreadable file is `unknown`; opening it returns the reason.
 [[nodiscard]] FileContent content_of_file(const std::filesystem::path& path);
 
 }  // namespace todbench

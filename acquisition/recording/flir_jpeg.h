@@ -8,8 +8,8 @@
 
 namespace todbench {
 
-/// Joins the segments "FLIR" of a JPEG file in the order of their numbers. Error: `invalid_input` (no JPEG, no such
-/// segment, a segment is missing, more than 64 MiB).
+/// Joins the APP1 segments with the identifier "FLIR" of a JPEG file in the order of their numbers. Error:
+/// `invalid_input` (no JPEG, no such segment, a missing segment, more than 64 MiB).
 [[nodiscard]] Result<std::string> flir_record_of_jpeg(const FlirBytes& jpeg);
 
 }  // namespace todbench

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// FFF records of FLIR: an index, the constants of the camera and one raw frame each, as SEQ, CSQ and FFF files and
-// radiometric JPEG pictures contain them. Layout as documented by the ExifTool project (FLIR tag tables).
+// FFF records of FLIR: each contains an index, the constants of the camera and one raw frame. SEQ, CSQ and FFF files
+// and radiometric JPEG pictures consist of such records. Layout as documented by the ExifTool project (FLIR tag
+// tables).
 #pragma once
 
 #include <cstdint>
@@ -16,15 +17,15 @@
 
 namespace todbench {
 
-/// Bytes of a file, or of memory, read where they are needed. Copies share them. One thread at a time.
+/// Bytes of a file or of memory, read on demand. Copies share them. One thread at a time.
 class FlirBytes {
  public:
-  /// Error: `io`.
+  /// Opens a file. Error: `io`.
   [[nodiscard]] static Result<FlirBytes> of_file(const std::filesystem::path& path);
   explicit FlirBytes(std::string memory);
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Reads `length` bytes from `offset`, or fewer at the end of the bytes. A file that became shorter gives fewer.
+  /// Reads `length` bytes from `offset`, or fewer at the end. Returns fewer also if the file was truncated meanwhile.
   [[nodiscard]] std::string read(std::uint64_t offset, std::size_t length) const;
 
  private:
@@ -34,19 +35,19 @@ class FlirBytes {
   std::uint64_t size_ = 0;
 };
 
-/// Planck constants of one camera, lens and range in FLIR's form: T = B / ln(R1 / (R2 (S + O)) + F), S in counts, T in
-/// kelvin.
+/// Planck constants of one camera, lens and measuring range, in FLIR's formula: T = B / ln(R1 / (R2 (S + O)) + F), S in
+/// counts, T in kelvin.
 struct FlirPlanck {
   double r1 = 0, r2 = 0, b = 0, f = 0, o = 0;
   bool operator==(const FlirPlanck&) const = default;
 };
 
 /// Converts to PlanckScale, T = B / ln(R / (S - O) + F): R = R1 / R2, and O changes its sign. Error: `calibration` if
-/// the constants are not a scale.
+/// the constants do not define a scale.
 [[nodiscard]] Result<RadiometricScale> planck_scale(const FlirPlanck& planck);
 
-/// The operator's settings about the scene. Kept for provenance: frames are in radiance temperature (emissivity 1, no
-/// atmosphere), as for a black body in front of the lens.
+/// Settings of the operator about the scene. They are kept only for provenance: the scale of the frames is radiance
+/// temperature (emissivity 1, no atmosphere), as for a black body in front of the lens.
 struct FlirObjectParameters {
   double emissivity = 1;
   double distance_m = 0;
@@ -65,7 +66,7 @@ struct FlirCamera {
   int raw_median = 0;                        ///< counts, as the camera states it; 0: not stated
 };
 
-/// How the pixels of a frame are stored.
+/// Storage format of the pixels of a frame.
 enum class FlirStorage { raw, png, jpeg_ls };
 
 /// One frame of a file and the location of its pixels.
@@ -73,23 +74,23 @@ struct FlirSeqFrame {
   std::uint64_t pixel_offset = 0;  ///< from the start of the bytes
   std::uint64_t pixel_bytes = 0;
   FlirStorage storage = FlirStorage::raw;
-  bool big_endian = false;  ///< of raw pixels
+  bool big_endian = false;  ///< for raw pixels
   int width = 0, height = 0;
   std::int64_t device_time_ns = 0;           ///< the camera's clock, since 1970; 0: not stated
   std::shared_ptr<const FlirCamera> camera;  ///< shared by frames of one camera and settings; null: not stated
 };
 
-/// A record and where it ends.
+/// A record and the position of its end.
 struct FlirRecord {
   FlirSeqFrame frame;
   std::uint64_t end = 0;
 };
 
-/// Whether the bytes begin with FFF or AFF, the first bytes of a record.
+/// Returns whether the bytes begin with FFF or AFF, the first bytes of a record.
 [[nodiscard]] bool is_flir_record(std::string_view start);
 
-/// Reads the record at `begin` without its pixels. Errors: `invalid_input` (no record, truncated, blocks outside the
-/// file or over each other, no pixels).
+/// Reads the record at `begin` without its pixels. Errors: `invalid_input` (no record, truncated, no pixels, blocks
+/// that overlap or lie outside the file).
 [[nodiscard]] Result<FlirRecord> read_flir_record(const FlirBytes& bytes, std::uint64_t begin);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recordings of the bench: every frame and failure of a camera, appended in order of arrival. Format:
+// Recordings of the bench: all frames and failures of a camera, appended in order of arrival. Format:
 // docs/reference/recordings.md.
 #pragma once
 
@@ -24,20 +24,21 @@ struct StreamHeader {
   SourceInfo info;  ///< of the camera, as read back when the recording began
   std::string created_utc;
   std::int64_t created_host_ns = 0;                ///< CLOCK_MONOTONIC at `created_utc`
-  std::map<std::string, std::string> annotations;  ///< further facts, e.g. about changes of the target
+  std::map<std::string, std::string> annotations;  ///< additional information, e.g. about changes of the target
 };
 
-/// A reply that the measuring program received besides the frames: the question and the answer.
+/// A question of the measuring program during the recording, and the answer that it received.
 struct Reading {
-  std::string tag;    ///< the question, without spaces; empty: damaged in the file
+  std::string tag;    ///< the question, without spaces; empty if it is damaged in the file
   std::string value;  ///< the answer; numbers as text
   bool operator==(const Reading&) const = default;
 };
 
-/// Appends to a recording. Every record is complete and has checksums, and is passed to the system before the call
-/// returns: a crash of the program loses no record, a crash of the machine only records that the system had not yet
-/// written. Move-only; several threads may append. Errors: `io` with the path. After a failed write (full disk, deleted
-/// file) the partial record is truncated and nothing more is appended, so that a recording has no holes.
+/// Appends to a recording. Every record is complete, has checksums, and is passed to the operating system before the
+/// call returns. A crash of the program therefore loses no record; a crash of the machine loses only the records that
+/// the system had not yet written. Move-only; several threads may append. Errors: `io` with the path. After a failed
+/// write (full disk, deleted file) the partial record is truncated and later records are refused, so that a recording
+/// has no gaps.
 class FrameStreamWriter {
  public:
   /// Creates or truncates the file.
@@ -49,12 +50,12 @@ class FrameStreamWriter {
   [[nodiscard]] Result<void> append(const Frame& frame);
   /// Appends a failure of the camera in place of a frame or a correction.
   [[nodiscard]] Result<void> append_failure(const Error& error, FailedCall call);
-  /// Appends a reply received between two frames; `invalid_input` for a tag that is empty or contains a space, or for
-  /// more than 64 KiB.
+  /// Appends a reply received between two frames. Error: `invalid_input` if the tag is empty or contains a space, or
+  /// for more than 64 KiB.
   [[nodiscard]] Result<void> append_reading(const Reading& reading);
   /// Waits until everything is on the disk. Fails if the file is no longer at its path.
   [[nodiscard]] Result<void> sync();
-  /// Calls sync() and reads the file again. Returns the number of frames; fails if it differs from the appended number.
+  /// Calls sync() and reads the file again. Returns the number of frames; fails if it differs from the number appended.
   [[nodiscard]] Result<std::uint64_t> verified_frames();
 
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
@@ -68,23 +69,23 @@ class FrameStreamWriter {
 
   WrittenFile file_;
   std::uint64_t frames_ = 0;
-  std::optional<Error> refused_;  ///< the error after which nothing more is appended
+  std::optional<Error> refused_;  ///< the error after which all later records are refused
   std::unique_ptr<std::mutex> appending_ = std::make_unique<std::mutex>();  ///< guards all other members
 };
 
-/// An opened recording. Readings and failures are in order. A failure has the index of the frame after it.
+/// An opened recording. Readings and failures are in order. The index of a failure is the index of the next frame.
 struct FrameStream {
   StreamHeader header;
   Recording recording;
   std::vector<Reading> readings;
-  std::uint64_t torn_bytes = 0;  ///< after the last complete record: rest of a record interrupted by a crash
+  std::uint64_t torn_bytes = 0;  ///< after the last complete record: remainder of a record that a crash interrupted
 };
 
-/// Whether a file begins like a recording of the bench.
+/// Returns whether a file begins like a recording of the bench.
 [[nodiscard]] bool is_frame_stream(const std::filesystem::path& file);
 
-/// Finds every record; pixels are read on demand. A frame with a wrong checksum is returned as incomplete. Errors:
-/// `io`, `invalid_input` (not a recording of the bench, or damaged before its first record).
+/// Finds all records; pixels are read on demand. A frame with a wrong checksum is returned as incomplete. Errors: `io`,
+/// `invalid_input` (not a recording of the bench, or damaged before its first record).
 [[nodiscard]] Result<FrameStream> open_frame_stream(const std::filesystem::path& file);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One picture from a file: TIFF or .npy, in whole counts or in any linear unit.
+// One picture from a file: TIFF or .npy, in integer counts or in any linear unit.
 #pragma once
 
 #include <filesystem>
@@ -15,15 +15,16 @@ namespace todbench {
 /// A picture from a file.
 struct PictureFile {
   cv::Mat1d picture;
-  /// Smallest and largest value of the file's integer type; empty for floating point.
+  /// Smallest and largest value of the file's integer type; empty for floating-point values.
   std::optional<std::pair<double, double>> counts{};
 };
 
-/// Reads a TIFF or .npy file, recognised by its first bytes. TIFF: one page, one sample of 8, 16 or 32 bits, or of 32
-/// or 64 bits floating point, in rows or strips, any byte order and lossless compression, rotated by its tag
-/// Orientation, 0 the darkest. .npy: an array of two dimensions, integers of 8 to 64 bits, floating point of 32 or 64,
-/// both byte orders, C and Fortran order. Values may be NaN. Errors: `invalid_input` with the path (neither format, or
-/// unreadable); `integrity` if the two bytes of 16-bit samples are exchanged.
+/// Reads a TIFF or .npy file, recognised by its first bytes. TIFF: one page; one sample per pixel of 8, 16 or 32 bits,
+/// or of 32 or 64 bits floating point; rows or strips, any byte order and lossless compression. The picture is rotated
+/// as its tag Orientation requires, and 0 is the darkest value. .npy: an array of two dimensions; integers of 8 to 64
+/// bits or floating point of 32 or 64 bits; both byte orders; C and Fortran order. Values may be NaN. Errors:
+/// `invalid_input` with the path (neither format, or unreadable); `integrity` if the two bytes of 16-bit samples are
+/// exchanged.
 [[nodiscard]] Result<PictureFile> read_picture(const std::filesystem::path& path);
 
 /// Reads the bytes of a .npy file (NumPy format 1.0 to 3.0). Error: `invalid_input` without a path.

@@ -10,7 +10,7 @@ namespace todbench {
 
 /// Byte order of the counts.
 enum class RawByteOrder { little, big };
-/// Whether the counts have a sign; signed values are raised by 32768.
+/// Whether the counts have a sign. 32768 is added to signed values.
 enum class RawSign { without, with };
 
 /// Format of a raw file, which has no header.
@@ -23,8 +23,8 @@ struct RawRecordingFormat {
   RawSign sign = RawSign::without;
 };
 
-/// Opens a raw recording. Errors: `io` (unreadable), `invalid_input` (impossible geometry; a file that is empty or does
-/// not hold a whole number of frames: it is truncated or the geometry is wrong).
+/// Opens a raw recording. Errors: `io` (unreadable), `invalid_input` (impossible geometry; an empty file; a file
+/// without a whole number of frames, because it is truncated or the geometry is wrong).
 [[nodiscard]] Result<Recording> open_raw_recording(const std::filesystem::path& path, const RawRecordingFormat& format);
 
 }  // namespace todbench

@@ -12,12 +12,12 @@
 
 namespace todbench {
 
-/// One recorded picture. Values that the recording does not state have their defaults.
+/// One recorded picture. Members that the recording does not state have their default values.
 struct RecordedFrame {
   cv::Mat1w counts;
   std::int64_t device_time_ns = 0;        ///< 0: not stated
-  std::optional<std::uint64_t> sequence;  ///< empty: one more than the frame before
-  std::int64_t host_time_ns = 0;          ///< of the host that recorded it; 0: not stated
+  std::optional<std::uint64_t> sequence;  ///< empty: one more than that of the previous frame
+  std::int64_t host_time_ns = 0;          ///< on the recording host; 0: not stated
   FrameStatus status = FrameStatus::complete;
   Numbering numbering = Numbering::counted;
   CorrectionState correction = CorrectionState::unknown;
@@ -28,15 +28,15 @@ struct RecordedFrame {
 /// The call that failed on the recorded camera.
 enum class FailedCall { next, correct_nonuniformity };
 
-/// A recorded failure of the camera in place of a frame or of a correction.
+/// A recorded failure of the camera. It takes the place of a frame or of a correction.
 struct RecordedFailure {
   std::uint64_t before_frame = 0;  ///< index of the next frame
   Error error;
   FailedCall call = FailedCall::next;
 };
 
-/// An opened recording: camera, number of frames, and a function that reads one. `read` is called on the thread of
-/// next() with an index below `frame_count` and owns everything it needs.
+/// An opened recording: camera, number of frames, and a function that reads one frame. next() calls `read` on its own
+/// thread with an index below `frame_count`. `read` owns all data that it uses.
 struct Recording {
   SourceInfo info;
   std::uint64_t frame_count = 0;
@@ -44,15 +44,16 @@ struct Recording {
   std::vector<RecordedFailure> failures{};  ///< in order; only a replay returns them
 };
 
-/// Times and failures of a served recording.
+/// Source of the times and failures of a recording that is played back.
 enum class Playback {
   camera,  ///< as from a live camera: host times are now, recorded failures are omitted
   replay,  ///< as recorded: recorded times and failures, also of non-uniformity corrections
 };
 
-/// Serves the frames in order, as fast as they are requested; the sequence begins at 0 unless the recording states
-/// otherwise. start() after stop() begins at the first frame again. The end of the recording and a frame that has
-/// become unreadable are `disconnected`. Features: the entries of info().settings, read-only.
+/// Returns a source that serves the frames in order, as fast as they are requested. The sequence begins at 0 unless the
+/// recording states otherwise. start() after stop() begins at the first frame again. The end of the recording is
+/// reported as `disconnected`, and so is a frame that has become unreadable. Features: the entries of info().settings,
+/// read-only.
 [[nodiscard]] std::unique_ptr<FrameSource> recorded_source(Recording recording, Playback playback = Playback::camera);
 
 }  // namespace todbench

@@ -11,20 +11,20 @@
 
 namespace todbench {
 
-/// Opens a recording of any kind, identified by its first bytes or its name:
+/// Opens a recording of any kind. The kind is determined by the first bytes of the file, not by its name:
 /// | file                           kind                     query
 /// | -----------------------------  -----------------------  ---------------------------------------------------
-/// | any name, by its first bytes   recording of the bench   ignored
-/// | *.seq                          FLIR SEQ                 ignored
-/// | *.tif, *.tiff, a folder        16-bit TIFF              [bits=14][&frame_rate_hz=9][&kelvin_per_count=0.01
-/// |                                                         [&offset_k=0]]
-/// | any other name                 raw 16-bit counts,       width=160&height=120 and the same
-/// |                                little-endian
+/// | recording of the bench         the same                 refused, because the file contains its format
+/// | FLIR SEQ, CSQ, FFF, JPEG       FLIR recording           refused, because the file contains its format
+/// | TIFF, or a folder of TIFF      16-bit TIFF              [bits=14][&frame_rate_hz=9][&kelvin_per_count=0.01
+/// |                                                         [&offset_k=0]][&unit=kelvin]
+/// | no known first bytes           raw 16-bit counts        width=160&height=120[&byte_order=big][&signed=yes]
+/// |                                                         and the same except unit
 /// Errors: `invalid_input` (key, number, damaged or short file), `not_found` (no such file), `io`.
 [[nodiscard]] Result<Recording> open_recording(const std::filesystem::path& path, const std::string& query);
 
-/// Scheme "file". list() is empty, because recordings are not discovered. Opens "file:PATH" and "file:PATH?QUERY" with
-/// open_recording().
+/// Returns the back end of scheme "file". Its list() is empty, because recordings are not discovered. It opens
+/// "file:PATH" and "file:PATH?QUERY" with open_recording().
 [[nodiscard]] std::unique_ptr<CameraBackend> recording_backend();
 
 }  // namespace todbench

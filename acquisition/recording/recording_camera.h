@@ -8,9 +8,9 @@
 
 namespace todbench {
 
-/// Forwards every call to `camera`. Appends every frame and every failure of next() and of a correction to `stream`
-/// before returning it. next() fails with `io` if a record cannot be written. The stream is shared with the writer of
-/// readings.
+/// Forwards all calls to `camera`. Appends every frame, every failure of next() and every failure of a correction to
+/// `stream` before returning it. next() fails with `io` if a record cannot be written. The writer of readings shares
+/// the stream.
 [[nodiscard]] std::unique_ptr<FrameSource> recording_camera(std::unique_ptr<FrameSource> camera,
                                                             std::shared_ptr<FrameStreamWriter> stream);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An open TIFF file with libtiff's messages.
+// An open TIFF file and the messages of libtiff.
 #pragma once
 
 #include <tiffio.h>
@@ -26,10 +26,10 @@ class TiffFile {
 
   /// Null if the file could not be opened.
   [[nodiscard]] TIFF* get() const { return tiff_.get(); }
-  /// The first message of libtiff; `otherwise` if there is none.
+  /// Returns the first message of libtiff; `otherwise` if there is none.
   [[nodiscard]] std::string why(const char* otherwise) const { return message_.empty() ? otherwise : message_; }
   void close() { tiff_.reset(); }
-  /// Bytes of the file; 0: unknown.
+  /// Returns the size of the file in bytes; 0: unknown.
   [[nodiscard]] std::uint64_t size_bytes() const { return size_bytes_; }
 
  private:
@@ -47,24 +47,25 @@ struct TiffPage {
   std::uint16_t bits = 1, samples = 1, kind = SAMPLEFORMAT_UINT;
   std::uint16_t orientation = ORIENTATION_TOPLEFT, photometric = PHOTOMETRIC_MINISBLACK, compression = COMPRESSION_NONE;
 
-  /// Whether both sides are 1 ... 65535.
+  /// Returns whether both sides are 1 ... 65535.
   [[nodiscard]] bool has_size() const { return width >= 1 && height >= 1 && width <= 65535 && height <= 65535; }
   [[nodiscard]] bool white_is_zero() const { return photometric == PHOTOMETRIC_MINISWHITE; }
 };
 /// Reads the tags of the current page.
 [[nodiscard]] TiffPage page_of(const TiffFile& file);
 
-/// Refuses everything but grey levels: colour tables, an invalid tag Orientation. Error: `invalid_input`.
+/// Checks that the page contains grey levels and a valid tag Orientation; colour tables are refused. Error:
+/// `invalid_input`.
 [[nodiscard]] Result<void> check_layout(const TiffPage& page);
 
 /// Reads the rows of the current page in file order, from the top, each `row_bytes` long, from strips or tiles. Rows of
-/// a compressed strip can only be read in order. A page that states more than its file can hold is refused before
-/// memory is allocated: libtiff's lossless compressions expand a byte to at most 4096. Errors: `io`.
+/// a compressed strip can only be read in order. A page that states more data than its file can hold is refused before
+/// memory is allocated: libtiff's lossless compressions expand a byte to at most 4096 bytes. Errors: `io`.
 class TiffRows {
  public:
   TiffRows(const TiffFile& file, const TiffPage& page, std::size_t row_bytes);
   [[nodiscard]] Result<void> may_hold();
-  /// The next row; valid until the next call.
+  /// Returns the next row; valid until the next call.
   [[nodiscard]] Result<const std::vector<char>*> next();
 
  private:
@@ -78,20 +79,20 @@ class TiffRows {
   std::vector<char> tile_, band_;                   ///< one tile; the rows of all tiles side by side
 };
 
-/// Rotates the picture as its tag Orientation demands: row 0 at the top, column 0 at the left. Orientations 5 to 8
+/// Rotates the picture as its tag Orientation requires: row 0 at the top, column 0 at the left. Orientations 5 to 8
 /// exchange rows and columns.
 [[nodiscard]] cv::Mat oriented(const cv::Mat& stored, std::uint16_t orientation);
 [[nodiscard]] constexpr bool exchanges_axes(std::uint16_t orientation) {
   return orientation >= ORIENTATION_LEFTTOP;
 }
 
-/// Pictures that ImageJ wrote one after another with one directory for all ("images=N" in the description).
+/// Consecutive pictures of ImageJ that share one directory ("images=N" in the description).
 struct ImageJStack {
   std::uint64_t images = 0;
   std::uint64_t offset = 0;  ///< of the first pixel in the file
 };
-/// Reads the stack of the first page; empty if the file states no number of images or one. Error: `invalid_input` (the
-/// file does not hold the stated number).
+/// Reads the stack of the first page. Empty if the file states one image or does not state the number. Error:
+/// `invalid_input` (the file does not hold the stated number).
 [[nodiscard]] Result<std::optional<ImageJStack>> image_j_stack(const TiffFile& file, std::uint64_t directories);
 
 }  // namespace todbench

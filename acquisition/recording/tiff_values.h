@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Signed and floating-point values of other programs as counts.
+// Conversion of signed and floating-point values from other programs to counts.
 #pragma once
 
 #include <cstdint>
@@ -21,19 +21,20 @@ struct ValueCounts {
   double offset = 0, step = 1;
   std::optional<ValueUnit> unit{};  ///< of floating-point values
 
-  /// Error: `invalid_input` (a value that is no number, or no whole number in counts; one outside 0 ... 65535 counts).
+  /// Converts values. Error: `invalid_input` (a value that is not a number, is a fraction although the unit is counts,
+  /// or is outside 0 ... 65535 counts).
   [[nodiscard]] Result<cv::Mat1w> counts(const cv::Mat& values) const;
-  /// Scale of the counts; `of_values` is that of the values in the file, if they have one.
+  /// Returns the scale of the counts. `of_values`: scale of the values in the file, if they have one.
   [[nodiscard]] Result<RadiometricScale> scale(const RadiometricScale& of_values) const;
-  /// The relation between values and counts in words, for provenance; empty if they are equal.
+  /// Returns the relation between values and counts in words, for provenance; empty if they are equal.
   [[nodiscard]] std::string describe() const;
 };
 
-/// Finds the conversion for values of OpenCV's type `depth`. Unsigned values are counts. Signed ones are raised by
-/// 32768. Floating-point values in kelvin or degrees Celsius get the smallest step of the series 1, 2, 5, from 0.1 mK
-/// to 0.1 K, in which all of them fit; for that every picture is read once. Errors: `invalid_input` (signed or
+/// Determines the conversion for values of OpenCV's type `depth`. Unsigned values are counts. 32768 is added to signed
+/// values. Floating-point values in kelvin or degrees Celsius get the smallest step of the series 1, 2, 5, from 0.1 mK
+/// to 0.1 K, that covers their range; this requires reading every picture once. Errors: `invalid_input` (signed or
 /// floating-point values without a unit, a unit that does not fit, fractions stated as counts, a range above 6553 K),
-/// and those of `read`.
+/// and the errors of `read`.
 [[nodiscard]] Result<ValueCounts> value_counts(int depth, std::optional<ValueUnit> unit, bool calibrated,
                                                std::uint64_t pictures,
                                                const std::function<Result<cv::Mat>(std::uint64_t)>& read);

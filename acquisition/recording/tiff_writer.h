@@ -10,10 +10,10 @@
 
 namespace todbench {
 
-/// Appends pages, uncompressed, little-endian, BigTIFF (no limit of 4 GiB). A page is complete in the file, pixels and
-/// directory, before the preceding page points to it: after a kill or on a full disk the file is readable up to its
-/// last complete page. Move-only, one thread at a time. Errors: `io` with the path; an incomplete page is then
-/// truncated and nothing more is appended.
+/// Appends pages, uncompressed, little-endian, BigTIFF (no limit of 4 GiB). Pixels and directory of a page are
+/// completely in the file before the preceding page points to it. Therefore, after the program is killed or on a full
+/// disk, the file is readable up to its last complete page. Move-only, one thread at a time. Errors: `io` with the
+/// path; an incomplete page is then truncated, and later pages are refused.
 class TiffWriter {
  public:
   [[nodiscard]] static Result<TiffWriter> create(const std::filesystem::path& path);
@@ -21,7 +21,7 @@ class TiffWriter {
   /// Appends one page; `invalid_input` for an empty picture.
   [[nodiscard]] Result<void> append(const cv::Mat1w& counts);
   /// Waits until everything is on the disk and reads the file again. Returns the number of pages found, 0 for a file
-  /// without pages (not a valid TIFF). Fails if it differs from the appended number.
+  /// without pages (not a valid TIFF). Fails if this differs from the number appended.
   [[nodiscard]] Result<std::uint64_t> verified_pages();
 
   [[nodiscard]] std::uint64_t pages() const { return pages_; }
@@ -32,8 +32,8 @@ class TiffWriter {
 
   WrittenFile file_;
   std::uint64_t pages_ = 0;
-  std::uint64_t link_offset_ = 0;  ///< position for the offset of the next directory
-  bool broken_ = false;            ///< the disk refused a page
+  std::uint64_t link_offset_ = 0;  ///< position in the file that receives the offset of the next directory
+  bool broken_ = false;            ///< writing a page failed
 };
 
 }  // namespace todbench
