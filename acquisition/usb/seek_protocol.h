@@ -25,8 +25,8 @@ enum class SeekModel {
   compact_pro,  ///< 289d:0011, picture 320 x 240
 };
 
-/// Layout of a frame of 16-bit little-endian words. The first row of every frame is a header, and the picture does not
-/// fill the remaining rows.
+/// Layout of a frame, which consists of 16-bit little-endian words. The first row of every frame is a header, and the
+/// picture does not fill the remaining rows.
 struct SeekGeometry {
   std::uint16_t product_id;
   int raw_width, raw_height;  ///< words
@@ -41,10 +41,10 @@ struct SeekGeometry {
 /// Returns the layout of a model.
 [[nodiscard]] const SeekGeometry& geometry(SeekModel model);
 [[nodiscard]] std::optional<SeekModel> seek_model(std::uint16_t vendor_id, std::uint16_t product_id);
-/// "Compact", "CompactPRO".
+/// Returns "Compact" or "CompactPRO".
 [[nodiscard]] std::string_view to_string(SeekModel model);
 
-/// "usb:SEEK-MODEL-SERIAL".
+/// Returns "usb:SEEK-MODEL-SERIAL".
 [[nodiscard]] std::string seek_camera_id(SeekModel model, std::string_view serial);
 
 /// Vendor requests to the interface (bmRequestType 0x41 out, 0xC1 in), wValue and wIndex 0.
@@ -61,7 +61,7 @@ enum class SeekRequest : std::uint8_t {
   get_factory_settings = 0x58,
 };
 
-/// One control transfer. `data` holds the bytes to send; for a reading request only its size counts.
+/// One control transfer. `data` holds the bytes to send; in a reading request only its size is used.
 struct SeekTransfer {
   SeekRequest request;
   std::vector<std::uint8_t> data;
@@ -69,45 +69,45 @@ struct SeekTransfer {
 };
 /// Transfers required before the first frame, in order.
 [[nodiscard]] std::vector<SeekTransfer> seek_initialisation(SeekModel model);
-/// Puts the camera to sleep. Send it three times, as the camera's own software does.
+/// Returns the transfer that puts the camera to sleep. Send it three times, as the camera's own software does.
 [[nodiscard]] SeekTransfer seek_sleep();
-/// Requests one frame.
+/// Returns the transfer that requests one frame.
 [[nodiscard]] SeekTransfer seek_frame_request(SeekModel model);
 
-/// Content of a frame, by its number on the wire. There are further numbers, all for calibration.
+/// Content of a frame, by its number on the wire. The other numbers are all used for calibration.
 enum class SeekFrameKind : std::uint16_t {
-  shutter = 1,      ///< the closed shutter: offsets of the pixels
+  shutter = 1,      ///< the closed shutter: shows the offsets of the pixels
   image = 3,        ///< the scene
-  calibration = 4,  ///< the first after initialisation: dead pixels are zero
+  calibration = 4,  ///< the first frame after initialisation: dead pixels are zero
 };
 
 /// A frame as received.
 struct SeekFrame {
   std::uint16_t kind = 0;     ///< a SeekFrameKind, or another number
-  std::uint16_t counter = 0;  ///< exposures, wraps at 2^16
+  std::uint16_t counter = 0;  ///< number of exposures, wraps at 2^16
   std::uint16_t temperature_word = 0;
   cv::Mat1w picture;  ///< as sent, without correction of shutter offsets and dead pixels
   [[nodiscard]] bool is(SeekFrameKind k) const { return kind == static_cast<std::uint16_t>(k); }
 };
 /// Reads a frame. Error: `invalid_input` if the bytes are not exactly one frame.
 [[nodiscard]] Result<SeekFrame> parse_seek_frame(std::span<const std::uint8_t> bytes, SeekModel model);
-/// Counter of a truncated frame; empty if the bytes end before it.
+/// Returns the counter of a truncated frame; empty if the bytes end before the counter.
 [[nodiscard]] std::optional<std::uint16_t> seek_counter(std::span<const std::uint8_t> bytes, SeekModel model);
 
 /// Pixels without a signal, and the neighbours that replace each. A pixel is dead if it is zero in the calibration
-/// frame or below half of the median of the pixels that are not zero. It gets the mean, rounded down, of those of its
-/// four neighbours that are not dead or were filled before it. Larger defects are filled from the rim inwards, each
-/// ring from the ring outside it, so that the result does not depend on the order within a ring.
+/// frame, or below half the median of the pixels that are not zero. It gets the mean, rounded down, of those of its
+/// four neighbours that are alive or already filled. Larger defects are filled from the rim inwards, each ring from the
+/// ring around it, so that the result does not depend on the order within a ring.
 class SeekDeadPixels {
  public:
   SeekDeadPixels() = default;  ///< none
   explicit SeekDeadPixels(const cv::Mat1w& calibration_picture);
   [[nodiscard]] std::size_t count() const { return dead_; }
-  /// Depth of the deepest pixel inside a defect; 1 for a pixel with a living neighbour.
+  /// Returns the depth of the deepest pixel inside a defect; 1 for a pixel with a living neighbour.
   [[nodiscard]] int depth() const { return depth_; }
-  /// Error: `calibration` if too much is replaced: more than 10 % of the pixels (a Compact omits every fifteenth by
-  /// design, 6.7 %, and has 0.3 to 1 % of dead ones), or a defect more than 2 pixels deep, which hides a target of 4
-  /// pixels.
+  /// Error: `calibration` if too many pixels are replaced. The limits are 10 % of the pixels and a defect depth of 2
+  /// pixels; a deeper defect hides a target of 4 pixels. By design a Compact omits every fifteenth pixel (6.7 %); 0.3
+  /// to 1 % of its pixels are dead.
   [[nodiscard]] Result<void> check() const;
   /// Fills the dead pixels. Precondition: same geometry as the calibration picture, or no dead pixels.
   void fill(cv::Mat1w& picture) const;
@@ -123,11 +123,11 @@ class SeekDeadPixels {
   int depth_ = 0;
 };
 
-/// Count of a pixel at the temperature of the shutter.
+/// Count that a pixel has at the temperature of the shutter.
 inline constexpr int seek_shutter_level = 0x4000;
 
-/// Returns picture - shutter picture + seek_shutter_level, clipped to 16 bits, with dead pixels filled. A pixel sent as
-/// 0 or 65535 keeps its value for the integrity gate.
+/// Returns picture - shutter picture + seek_shutter_level, clipped to 16 bits, with dead pixels filled. A pixel that
+/// was sent as 0 or 65535 keeps its value for the integrity gate.
 [[nodiscard]] cv::Mat1w corrected_seek_picture(const cv::Mat1w& picture, const cv::Mat1w& shutter,
                                                const SeekDeadPixels& dead);
 

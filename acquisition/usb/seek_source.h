@@ -17,7 +17,7 @@ namespace todbench {
 /// An open Seek camera. One thread at a time, except stop().
 class SeekSource final : public FrameSource {
  public:
-  /// Takes over the opened camera. Errors: `not_found`.
+  /// Creates a source that owns the opened camera. Errors: `not_found`.
   [[nodiscard]] static Result<std::unique_ptr<FrameSource>> create(UsbContext context, const SeekOnBus& camera,
                                                                    std::string id, UsbConnection connection);
   ~SeekSource() override;
@@ -32,17 +32,17 @@ class SeekSource final : public FrameSource {
 
  private:
   SeekSource(UsbContext context, UsbConnection connection, SeekModel model);
-  /// Initialises the camera and reads frames until dead pixels and shutter picture are known.
+  /// Initialises the camera and reads frames until the dead pixels and the shutter picture are known.
   [[nodiscard]] Result<void> calibrate();
   [[nodiscard]] Result<void> initialise();
-  /// Reads the calibration frame and the following frames up to and including the shutter's.
+  /// Reads the calibration frame and the following frames, up to and including the shutter frame.
   [[nodiscard]] Result<void> read_calibration_frames(std::chrono::steady_clock::time_point deadline);
   /// Reads a frame within two seconds and before `latest`, even if its bytes arrive slowly.
   [[nodiscard]] Result<SeekFrame> read_frame(std::chrono::steady_clock::time_point latest);
   [[nodiscard]] Frame frame_of(const SeekArrival& arrival);
   void sleep();
   void update_scale();
-  /// Records a loss and passes the error on.
+  /// Records a loss of the camera and returns the error.
   [[nodiscard]] tl::unexpected<Error> failed(const Error& error);
   [[nodiscard]] Error disconnected() const;
 
@@ -55,13 +55,13 @@ class SeekSource final : public FrameSource {
   SeekDeadPixels dead_;
   cv::Mat1w shutter_;
   std::int64_t shutter_time_ns_ = 0;
-  bool pictures_begun_ = false;  ///< the first image has arrived, from which frames are counted
+  bool pictures_begun_ = false;  ///< the first image has arrived; frames are counted from there
   FrameSequence sequence_{FrameNumberKind::wrap16, 0};
   bool corrected_last_ = false;  ///< the preceding frame was part of a correction
 
   std::atomic<bool> running_{false};
   std::atomic<bool> lost_{false};
-  std::mutex mutex_;  ///< guards the stream against stop(), and stop() against itself
+  std::mutex mutex_;  ///< guards the stream against stop(), and serialises calls of stop()
   std::shared_ptr<SeekStream> stream_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stream of frames of an opened Seek camera: asynchronous transfers, one frame requested at a time as the camera
-// demands. Private to the USB back end.
+// Stream of frames of an opened Seek camera. Uses asynchronous transfers and requests one frame at a time, as the
+// camera requires. Private to the USB back end.
 #pragma once
 
 #include <chrono>
@@ -21,23 +21,23 @@ namespace todbench {
 struct SeekArrival {
   std::vector<std::uint8_t> bytes;  ///< fewer than a frame if the transfer ended early
   std::int64_t host_time_ns = 0;    ///< CLOCK_MONOTONIC at the end of the transfer
-  bool after_unread = false;        ///< frames directly before this one were dropped for a slow reader
+  bool after_unread = false;        ///< frames directly before this one were dropped because the reader was slow
 };
 
-/// Requests and receives frames on a thread of its own from creation to end().
+/// Requests and receives frames on its own thread from creation to end().
 class SeekStream {
  public:
-  /// `connection` must outlive the stream. `waiting`: maximum number of frames kept for a slow reader; further frames
-  /// are dropped and show as a gap in the camera's counter. Errors: `disconnected`.
+  /// Starts a stream. `connection` must outlive it. `waiting`: maximum number of frames kept for a slow reader. Further
+  /// frames are dropped, and the camera's counter shows the gap. Errors: `disconnected`.
   [[nodiscard]] static Result<std::unique_ptr<SeekStream>> start(UsbContext context, UsbConnection& connection,
                                                                  SeekModel model, std::size_t waiting);
   ~SeekStream();
   SeekStream(const SeekStream&) = delete;
   SeekStream& operator=(const SeekStream&) = delete;
 
-  /// The next arrival. Errors: `timeout`, `interrupted` (end() was called), `disconnected`. Any thread.
+  /// Returns the the next arrival. Errors: `timeout`, `interrupted` (end() was called), `disconnected`. Any thread.
   [[nodiscard]] Result<SeekArrival> next(std::chrono::milliseconds timeout);
-  /// Ends the stream and every present and later next(), within milliseconds. Any thread, one at a time.
+  /// Ends the stream and all present and later calls of next() within milliseconds. Any thread, one at a time.
   void end();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Owners of libusb's objects: a context, its devices, an opened device with its claimed interface.
+// Owners of libusb's objects: a context, its devices, and an opened device with its claimed interface.
 #pragma once
 
 #include <libusb.h>
@@ -17,7 +17,7 @@
 
 namespace todbench {
 
-/// Shared by every object created from it, because libusb requires that it is destroyed last.
+/// A libusb context, shared by all objects created from it, because libusb requires that the context is destroyed last.
 using UsbContext = std::shared_ptr<libusb_context>;
 /// Creates a context.
 [[nodiscard]] Result<UsbContext> usb_context();
@@ -27,7 +27,7 @@ struct UsbDeviceDeleter {
 };
 using UsbDevicePtr = std::unique_ptr<libusb_device, UsbDeviceDeleter>;
 
-/// Text of a libusb error, for people.
+/// Returns the text of a libusb error, for people.
 [[nodiscard]] std::string usb_error_text(int error);
 
 /// A Seek camera on the bus, not opened.
@@ -42,16 +42,16 @@ struct SeekOnBus {
 /// An opened camera with interface 0 claimed. Owns it and releases it on destruction. One thread at a time.
 class UsbConnection {
  public:
-  /// Error: `not_found`: access denied (the message names the remedy), busy, or unplugged.
+  /// Opens a camera. Error: `not_found`: access denied (the message contains the remedy), busy, or unplugged.
   [[nodiscard]] static Result<UsbConnection> open(const SeekOnBus& camera);
 
   /// Performs one vendor request to the interface. Returns the bytes read. Errors: `disconnected`, `timeout`, `io`.
   [[nodiscard]] Result<std::vector<std::uint8_t>> control(const SeekTransfer& transfer);
-  /// Reads up to `bytes` from the camera's bulk endpoint; fewer if the camera ends its transfer early. Errors as
+  /// Reads up to `bytes` from the camera's bulk endpoint; fewer if the camera ends the transfer early. Errors as
   /// control().
   [[nodiscard]] Result<std::vector<std::uint8_t>> bulk_in(std::size_t bytes, std::chrono::milliseconds timeout);
 
-  /// The serial number in the descriptors, or that of the chip in hexadecimal if they have none.
+  /// Returns the serial number in the descriptors, or the chip's serial number in hexadecimal if they have none.
   [[nodiscard]] Result<std::string> serial_number();
   [[nodiscard]] Result<std::string> firmware();
   [[nodiscard]] libusb_device_handle* handle() const { return handle_.get(); }
