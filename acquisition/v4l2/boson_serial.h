@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Serial port of a FLIR Boson: gain mode and non-uniformity correction, which USB video does not carry. Framing and
+// Serial port of a FLIR Boson: gain mode and non-uniformity correction, which USB video does not offer. Framing and
 // function codes as in FLIR's published software development kit (FSLP, FunctionCodes.h, EnumTypes.h).
 #pragma once
 
@@ -31,29 +31,29 @@ struct BosonReply {
   std::string payload;
 };
 
-/// Bytes of a request: start byte, channel 0, sequence, function, four bytes FF, payload, CRC, end byte; the three
-/// bytes of the framing are escaped within.
+/// Returns the bytes of a request: start byte, channel 0, sequence, function, four bytes FF, payload, CRC, end byte.
+/// The three bytes that the framing uses are escaped inside the request.
 [[nodiscard]] std::string boson_request(std::uint32_t sequence, BosonFunction function, std::string_view payload = {});
 
 /// Reads the bytes from a start byte to the next end byte, both included. Error: `invalid_input` (no frame, an unknown
 /// escape, a wrong CRC, another channel, too short).
 [[nodiscard]] Result<BosonReply> boson_reply(std::string_view frame);
 
-/// Names of the modes, as used by the features GainMode and FFCMode; empty for an unknown number.
+/// Return the names of the modes that the features GainMode and FFCMode use; empty for an unknown number.
 [[nodiscard]] std::string_view boson_gain_mode(std::uint32_t number);
 [[nodiscard]] std::string_view boson_correction_mode(std::uint32_t number);
 
 /// An open serial port. One thread at a time.
 class BosonPort {
  public:
-  /// Error: `io`.
+  /// Opens a port. Error: `io`.
   [[nodiscard]] static Result<BosonPort> open(const std::filesystem::path& node);
 
   /// Sends a request and waits for its answer. Errors: `timeout`, `io`, `invalid_input` (the camera refuses the
   /// request, or its answer is damaged).
   [[nodiscard]] Result<std::string> call(BosonFunction function, std::string_view payload = {},
                                          std::chrono::milliseconds patience = std::chrono::milliseconds(2000));
-  /// The mode that a function reads. Errors as call().
+  /// Returns the mode that a function reads. Errors as call().
   [[nodiscard]] Result<std::uint32_t> mode(BosonFunction function);
   [[nodiscard]] Result<void> set_mode(BosonFunction function, std::uint32_t number);
 
@@ -63,7 +63,7 @@ class BosonPort {
   std::uint32_t sequence_ = 0;
 };
 
-/// Node of the serial port that belongs to a USB device, by its folder in sysfs; empty if it has none.
+/// Returns the node of the serial port that belongs to a USB device, by its folder in sysfs; empty if it has none.
 [[nodiscard]] std::optional<std::filesystem::path> serial_port_of(const std::filesystem::path& usb_device);
 
 }  // namespace todbench

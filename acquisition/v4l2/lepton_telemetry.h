@@ -13,9 +13,9 @@ namespace todbench {
 /// State of the flat-field correction: bits 4-5 of the status.
 enum class FfcState { never, imminent, in_progress, complete };
 
-/// The fields of the Lepton's telemetry that a measurement needs. Words count from the first telemetry row (row A is
-/// words 0-79, B 80-159, C 160-239); 32-bit numbers have their low word first (Lepton engineering data sheet, telemetry
-/// data content encoding).
+/// The fields of the Lepton's telemetry that a measurement needs. Words are numbered from the first telemetry row (row
+/// A is words 0-79, B 80-159, C 160-239); 32-bit numbers have their low word first (Lepton engineering data sheet,
+/// telemetry data content encoding).
 struct LeptonTelemetry {
   std::uint16_t revision = 0;
   std::uint32_t time_ms = 0;  ///< since power-up
@@ -24,27 +24,29 @@ struct LeptonTelemetry {
   double fpa_temperature_k = 0;            ///< of the detector
   double fpa_temperature_ffc_k = 0;        ///< at the last flat-field correction
   std::uint32_t time_last_ffc_ms = 0;      ///< since power-up, of the last flat-field correction
-  std::optional<double> kelvin_per_count;  ///< of the linear temperature mode; empty: counts are proportional to flux
+  std::optional<double> kelvin_per_count;  ///< in the linear temperature mode; empty: counts are proportional to
+                                           ///< radiant flux
 
   [[nodiscard]] FfcState ffc_state() const { return static_cast<FfcState>(status >> 4U & 3U); }
-  /// Automatic gain: the counts have no radiometric meaning.
+  /// Returns whether automatic gain is on: the counts then have no radiometric meaning.
   [[nodiscard]] bool agc() const { return (status >> 12U & 1U) != 0; }
-  /// Time since the last correction, correct across a wrap of the 32-bit clock; empty before the first correction.
+  /// Returns the time since the last correction, also across a wrap of the 32-bit clock; empty before the first
+  /// correction.
   [[nodiscard]] std::optional<double> since_ffc_s() const;
   bool operator==(const LeptonTelemetry&) const = default;
 };
 
-/// Words of the three telemetry lines of 80.
+/// Number of words in three telemetry lines of 80 words.
 inline constexpr std::size_t lepton_telemetry_words = 240;
 
-/// Rows of telemetry in a picture of this width: 3 for a Lepton 2 (80), 2 for a Lepton 3 (160).
+/// Returns the number of telemetry rows in a picture of this width: 3 for a Lepton 2 (80), 2 for a Lepton 3 (160).
 [[nodiscard]] int lepton_telemetry_rows(int width);
 
-/// Empty if there are fewer than 240 words or the revision word is not that of a telemetry row (high byte 1 ... 31;
-/// rows without telemetry have 0 or all bits set).
+/// Parses telemetry. Empty if there are fewer than 240 words or the revision word does not belong to a telemetry row.
+/// In telemetry its high byte is 1 ... 31; in other rows it has 0 or all bits set.
 [[nodiscard]] std::optional<LeptonTelemetry> parse_lepton_telemetry(std::span<const std::uint16_t> words);
 
-/// The inverse, for devices that send telemetry: 240 words; words that are not in the struct are zero.
+/// Encodes telemetry for a device that sends it: 240 words. Words without a member in the struct are zero.
 [[nodiscard]] std::array<std::uint16_t, lepton_telemetry_words> encode_lepton_telemetry(
     const LeptonTelemetry& telemetry);
 

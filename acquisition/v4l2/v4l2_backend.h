@@ -17,12 +17,12 @@ struct V4l2Options {
 };
 
 /// Lists and opens cameras by identity, "v4l2:VENDOR-MODEL-SERIAL" from the USB device, or by their present node,
-/// "v4l2:/dev/video2". A camera without serial number is identified by its port. Y16, Y14, Y12, Y10 and GREY are
-/// counts; YUYV is measured only if the camera sends temperatures below its picture (256 x 384 and the like).
+/// "v4l2:/dev/video2". A camera without a serial number is identified by its port. Y16, Y14, Y12, Y10 and GREY are
+/// counts. YUYV is measured only if the camera sends temperatures below its picture (256 x 384 and similar).
 ///
 /// Features in addition to the controls of the driver: PixelFormat, Width, Height, AcquisitionFrameRate,
 /// DeviceVendorName, DeviceModelName, DeviceSerialNumber, and TemperatureLinearScale and TemperatureLinearOffset
-/// (kelvin per count, kelvin at count 0). Setting the scale states a value that the camera does not report; it never
+/// (kelvin per count, kelvin at count 0). The user sets the scale if the camera does not report it; setting it never
 /// changes the camera.
 [[nodiscard]] std::unique_ptr<CameraBackend> v4l2_backend(V4l2Options options = {});
 

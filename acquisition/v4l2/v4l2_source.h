@@ -44,7 +44,7 @@ class V4l2Source final : public FrameSource {
     Frame frame;  ///< without sequence and scale
     std::uint32_t sequence = 0;
     std::optional<LeptonTelemetry> telemetry;
-    bool after_unread = false;  ///< frames directly before this one found the inbox full
+    bool after_unread = false;  ///< frames directly before this one were dropped because the inbox was full
   };
 
   /// State shared by the receiving thread and the reader.
@@ -66,16 +66,17 @@ class V4l2Source final : public FrameSource {
   void open_serial_port();
   /// Reads the settings of a Boson from its serial port, for settings and warnings.
   void refresh_serial_port();
-  /// Writes GainMode or FFCMode. Error: `not_found` with the accepted words.
+  /// Writes GainMode or FFCMode. Error: `not_found` with the accepted values.
   [[nodiscard]] Result<void> set_boson_mode(const std::string& feature, const std::string& value);
   [[nodiscard]] Result<void> correct_boson();
   void set_scale(const RadiometricScale& scale);
   [[nodiscard]] RadiometricScale scale_of(const LeptonTelemetry& telemetry) const;
-  /// Reads frames of a camera that reports its scale only in telemetry, until one does. The first frames may be empty.
+  /// Reads frames until one contains the scale, for a camera that reports its scale only in telemetry. The first frames
+  /// may lack it.
   [[nodiscard]] Result<void> learn_scale();
 
-  /// The receiving thread: takes every frame at once, so that its host time is the time of arrival and the driver never
-  /// lacks a buffer.
+  /// Runs the receiving thread. It fetches every frame at once, so that the frame's host time is its time of arrival
+  /// and the driver always has a free buffer.
   void receive(const std::stop_token& stop);
   void keep(const VideoBuffer& buffer);
   [[nodiscard]] bool device_has_gone();
@@ -85,7 +86,7 @@ class V4l2Source final : public FrameSource {
   [[nodiscard]] bool is_lost() const;
   void mark_lost();
   [[nodiscard]] Error disconnected() const;
-  /// Passes an error on and records a loss.
+  /// Records a loss of the camera and returns the error.
   [[nodiscard]] Error noted(const Error& error);
 
   VideoNode node_;
@@ -96,23 +97,23 @@ class V4l2Source final : public FrameSource {
   std::shared_ptr<const RadiometricScale> scale_;
   VideoLayout layout_;
   WantedLayout wanted_;
-  std::string nuc_command_;  ///< control that corrects the non-uniformity; empty: found by its name
-  std::optional<double> stated_kelvin_per_count_;  ///< by the user, for cameras that do not report it
+  std::string nuc_command_;                        ///< control that corrects the non-uniformity; empty: search by name
+  std::optional<double> stated_kelvin_per_count_;  ///< stated by the user if the camera does not report it
   double stated_offset_k_ = 0;
 
-  // Members of the reader, for one run.
+  // Members used by the reader during one run.
   FrameSequence sequence_{FrameNumberKind::wrap32, 0};
   bool corrected_last_ = false;          ///< the preceding frame was exposed during a correction
   std::int64_t may_pause_until_ns_ = 0;  ///< host time until which a commanded correction may interrupt the stream
   std::uint32_t repeated_ = 0;           ///< frames that the camera sent twice, excluded from the sequence
   std::optional<std::uint32_t> last_counter_;
-  bool telemetry_came_ = false;  ///< since the layout was set
+  bool telemetry_came_ = false;  ///< telemetry arrived since the layout was set
 
   std::mutex control_;  ///< serialises start, stop, get and set; locked before inbox_.mutex
   VideoDevice device_;  ///< used by the receiving thread while it runs, except for controls
   std::vector<VideoControl> controls_;
   std::optional<BosonPort> serial_port_;  ///< of a Boson
-  std::string serial_port_problem_;       ///< reason why it is not used; empty: none
+  std::string serial_port_problem_;       ///< reason why it is not used; empty: no problem
   mutable Inbox inbox_;
   std::jthread receiver_;
 };

@@ -31,11 +31,11 @@ struct VideoBuffer {
   std::uint32_t sequence = 0;
   std::int64_t time_ns = 0;  ///< 0: none
   bool damaged = false;      ///< V4L2_BUF_FLAG_ERROR, or an empty buffer
-  bool oversized = false;    ///< states more bytes than its buffer or the format has
+  bool oversized = false;    ///< states more bytes than its buffer or the format holds
 };
 
 /// An open node. Errors of every method: `disconnected` if the device is gone (ENODEV), otherwise as stated. Not
-/// thread-safe: the source serialises.
+/// thread-safe; the source serialises the calls.
 class VideoDevice {
  public:
   /// Opens a node. Error: `not_found` (absent, access denied, not a capture node).
@@ -48,26 +48,27 @@ class VideoDevice {
 
   [[nodiscard]] int fd() const { return fd_.get(); }
   [[nodiscard]] const VideoCapability& capability() const { return capability_; }
-  /// Lists formats and discrete sizes; a range of sizes counts as its largest. If a driver lists no sizes, very
-  /// large and very small ones are tried, and the sizes that it substitutes and the present one are used. `also`: a
-  /// size that is tried in every format too, for a driver that lists only a range.
+  /// Lists formats and discrete sizes; a range of sizes is represented by its largest. If a driver lists no sizes, very
+  /// large and very small sizes are tried; the result contains the sizes that the driver substitutes and the present
+  /// size. `also`: a size that is also tried in every format, for a driver that lists only a range.
   [[nodiscard]] std::vector<VideoMode> modes(const std::optional<cv::Size>& also = {}) const;
-  /// Sets the mode and fills in the driver's row length. Error: `not_found` (busy, or another mode was set).
+  /// Sets the mode. Returns the layout with the driver's row length. Error: `not_found` (busy, or the driver set
+  /// another mode).
   [[nodiscard]] Result<VideoLayout> set_format(VideoLayout layout);
-  /// Fails if the present format differs from that of the layout.
+  /// Fails if the present format differs from the format of the layout.
   [[nodiscard]] Result<void> check_format(const VideoLayout& layout) const;
-  /// Frames per second; 0 if the driver does not report them.
+  /// Returns the frame rate in Hz; 0 if the driver does not report it.
   [[nodiscard]] double frame_rate_hz() const;
   [[nodiscard]] Result<void> set_frame_rate(double frame_rate_hz);
 
-  /// Requests, maps and queues buffers and starts streaming. Error: `not_found` (busy); everything is then released.
+  /// Requests, maps and queues buffers and starts streaming. Error: `not_found` (busy); all buffers are then released.
   [[nodiscard]] Result<void> start(unsigned buffers);
   /// Stops and unmaps. No effect if stopped.
   void stop();
-  /// Passes the next filled buffer to `use` and queues it again. False: none is ready.
+  /// Passes the next filled buffer to `use` and queues it again. Returns false if no buffer is ready.
   [[nodiscard]] Result<bool> take(const std::function<void(const VideoBuffer&)>& use);
 
-  /// ioctl(), repeated when a signal interrupts it. Returns errno, 0 for success.
+  /// Calls ioctl() and repeats it when a signal interrupts it. Returns errno; 0 for success.
   [[nodiscard]] int call(unsigned long request, void* argument) const;
 
  private:
@@ -91,11 +92,12 @@ class VideoDevice {
 
   VideoDevice(Descriptor fd, VideoCapability capability);
   [[nodiscard]] Result<void> map_and_queue(unsigned index);
-  /// Sizes of a format that the driver lists.
+  /// Returns the sizes of a format that the driver lists.
   [[nodiscard]] std::vector<VideoMode> listed_sizes(std::uint32_t fourcc) const;
-  /// Sizes found by trying.
+  /// Returns the sizes found by trying.
   [[nodiscard]] std::vector<VideoMode> tried_sizes(std::uint32_t fourcc) const;
-  /// The size that the driver would use for `wanted`; empty if the query fails or the driver would use another format.
+  /// Returns the size that the driver would use for `wanted`; empty if the query fails or the driver would use another
+  /// format.
   [[nodiscard]] std::optional<VideoMode> tried(VideoMode wanted) const;
 
   Descriptor fd_;
@@ -105,7 +107,7 @@ class VideoDevice {
   std::size_t image_bytes_ = 0;  ///< of the format, as the driver reports; 0: unknown
 };
 
-/// Error of an ioctl: `disconnected` for a device that is gone, otherwise `otherwise`.
+/// Returns the error of an ioctl: `disconnected` for a device that is gone, otherwise `otherwise`.
 [[nodiscard]] Error video_error(int error_number, const std::string& doing, ErrorCode otherwise);
 
 }  // namespace todbench

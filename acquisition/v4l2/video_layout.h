@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Meaning of the rows of a video frame: all picture, a display picture above temperatures, or a picture with telemetry
-// below. Pure functions over untrusted bytes.
+// Meaning of the rows of a video frame. All rows are picture, or a display picture stands above temperatures, or
+// telemetry stands above or below the picture. Pure functions over untrusted bytes.
 #pragma once
 
 #include <cstddef>
@@ -16,12 +16,12 @@
 
 namespace todbench {
 
-/// Families of cameras whose rows have a meaning that the four-character code does not state.
+/// Families of cameras whose rows have a meaning that the four-character code does not define.
 enum class VideoFamily {
   plain,             ///< every row is picture
-  temperature_rows,  ///< InfiRay Tiny1 class: YUYV whose lower half is temperature, 1/64 K per count
-  lepton,            ///< PureThermal: Y16 with telemetry rows below the picture if that size is chosen
-  boson,             ///< FLIR Boson: Y16 of 640x512 or 320x256, telemetry rows above or below if they are on
+  temperature_rows,  ///< InfiRay Tiny1 class: YUYV whose lower half contains temperatures, 1/64 K per count
+  lepton,            ///< PureThermal: Y16; telemetry rows below the picture if the frame size includes them
+  boson,             ///< FLIR Boson: Y16 of 640x512 or 320x256; telemetry rows above or below the picture if enabled
 };
 
 /// Returns the family of a USB camera: PureThermal 1e4e:0100; Boson 09cb:4007; Tiny1 class 0bda:5830 and 0bda:5840
@@ -39,19 +39,19 @@ struct VideoMode {
 struct VideoLayout {
   VideoMode mode;
   std::size_t row_bytes = 0;     ///< distance between rows, as the driver reports
-  std::size_t filler_bytes = 0;  ///< after the last row, of a driver that transfers whole pages
+  std::size_t filler_bytes = 0;  ///< after the last row, from a driver that transfers whole pages
   std::string pixel_format;      ///< PFNC name of the counts
   int significant_bits = 16;
   cv::Rect picture;        ///< rows that hold counts
-  int telemetry_rows = 0;  ///< below the picture, of a Lepton
-  /// Rows without picture, all above or all below it; `picture` then begins at the first row that may be either. Their
-  /// position is found in each frame: they differ more from their neighbours than rows of the picture.
+  int telemetry_rows = 0;  ///< rows below the picture of a Lepton
+  /// Rows without picture, all above or all below it. `picture` then begins at the first row that may belong to either.
+  /// Their position is determined in each frame: they differ more from their neighbours than rows of the picture do.
   int foreign_rows = 0;
   double kelvin_per_count = 0;  ///< 0: the family does not state it
 };
 
-/// Most additional rows that count as telemetry if a mode is higher than another one of the same camera and width:
-/// telemetry of the Boson and the Tau takes up to 4.
+/// Maximum number of additional rows that are taken as telemetry if a mode is higher than another mode of the same
+/// camera and width. Telemetry of the Boson and the Tau has up to 4 rows.
 inline constexpr int most_foreign_rows = 4;
 
 /// The user's choice of a mode; empty members are chosen automatically.
@@ -60,10 +60,10 @@ struct WantedLayout {
   std::optional<cv::Size> frame{};  ///< size of the mode, telemetry rows included
 };
 
-/// Chooses the best mode: 16 bits before 14, 12, 10 and 8; then the largest picture; a Lepton with telemetry rows
-/// before without, others without before with. If a mode has up to four rows more than another one of the same format
-/// and width, these rows are telemetry. Error: `not_found` with the camera's modes; YUYV of a camera without
-/// temperature rows is a display picture and cannot be measured.
+/// Chooses the best mode: 16 bits before 14, 12, 10 and 8; then the largest picture. For a Lepton, modes with telemetry
+/// rows are preferred; for other cameras, modes without. If a mode has up to four rows more than another mode of the
+/// same format and width, these rows are telemetry. Error: `not_found` with the camera's modes. YUYV of a camera
+/// without temperature rows is a display picture and cannot be measured.
 [[nodiscard]] Result<VideoLayout> choose_layout(const std::vector<VideoMode>& modes, VideoFamily family,
                                                 const WantedLayout& wanted);
 
@@ -74,11 +74,12 @@ struct VideoPicture {
   std::optional<LeptonTelemetry> telemetry;
 };
 
-/// Decodes counts and telemetry of one frame. Error: `invalid_input` if the number of bytes differs from the layout.
-/// With more bytes the rows are longer than the driver states, or other rows exist, and every pixel is in doubt.
+/// Decodes counts and telemetry of one frame. Error: `invalid_input` if the number of bytes differs from the layout. If
+/// there are more bytes, the rows are longer than the driver states or additional rows exist, so the position of every
+/// pixel is uncertain.
 [[nodiscard]] Result<VideoPicture> read_video_frame(std::span<const std::uint8_t> bytes, const VideoLayout& layout);
 
-/// "Y16 ", "YUYV", "Y16 -BE": for messages.
+/// Returns a text for messages: "Y16 ", "YUYV", "Y16 -BE".
 [[nodiscard]] std::string fourcc_text(std::uint32_t fourcc);
 
 }  // namespace todbench

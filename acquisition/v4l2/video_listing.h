@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Cameras of the kernel, their identity, arrival and removal, through udev. Private to the V4L2 back end except
+// Video4Linux cameras: their identity, arrival and removal, through udev. Private to the V4L2 back end except
 // VideoWatch.
 #pragma once
 
@@ -19,26 +19,26 @@ namespace todbench {
 struct VideoNode {
   std::string id;           ///< "v4l2:VENDOR-MODEL-SERIAL"
   std::string node;         ///< "/dev/video2": present node, never part of the identity
-  std::string sys_path;     ///< of the video device
-  std::string device_path;  ///< of the device that contains it
+  std::string sys_path;     ///< path of the video device in sysfs
+  std::string device_path;  ///< path of the device that contains it
   std::string vendor, model, serial, firmware;
-  std::string port;  ///< of a USB device, "1-2.3"
+  std::string port;  ///< port of a USB device, "1-2.3"
   std::uint16_t usb_vendor = 0, usb_product = 0;
   std::string driver;
 
   [[nodiscard]] VideoFamily family() const { return video_family(usb_vendor, usb_product); }
 };
 
-/// "v4l2:VENDOR-MODEL-SERIAL" in letters, digits, '.', '_' (other characters become '_'). A camera without a serial
-/// number is identified by its port: "v4l2:VENDOR-MODEL-at_1_2.3".
+/// Returns "v4l2:VENDOR-MODEL-SERIAL" in letters, digits, '.', '_' (other characters become '_'). A camera without a
+/// serial number is identified by its port: "v4l2:VENDOR-MODEL-at_1_2.3".
 [[nodiscard]] std::string video_id(const VideoNode& node);
 
-/// Gives every node a unique id. Cameras of one kind with equal serial numbers are distinguished by their ports too,
-/// "v4l2:VENDOR-MODEL-SERIAL-at_1_2.3", because the order of their nodes changes when they are plugged in again.
-/// Nodes whose ids are still equal are numbered in the order of the list: the second ends in ".2".
+/// Assigns a unique id to every node. Cameras of one kind with equal serial numbers are also distinguished by their
+/// ports, "v4l2:VENDOR-MODEL-SERIAL-at_1_2.3", because the order of their nodes changes when they are plugged in again.
+/// If ids are still equal, the nodes are numbered in the order of the list: the second ends in ".2".
 void tell_apart(std::vector<VideoNode>& nodes);
 
-/// Every node that captures with streaming; nodes that cannot be opened are listed in `unreadable`.
+/// All nodes that capture with streaming. Nodes that cannot be opened are listed in `unreadable`.
 struct VideoListing {
   std::vector<VideoNode> nodes;
   std::vector<std::string> unreadable;  ///< one sentence each
@@ -54,7 +54,7 @@ struct VideoEvent {
   std::string sys_path;  ///< distinguishes it from another device that gets the same node later
 };
 
-/// Arrivals and removals since its creation. One thread at a time.
+/// Arrivals and removals of video devices since its creation. One thread at a time.
 class VideoWatch {
  public:
   [[nodiscard]] static Result<VideoWatch> create();
@@ -64,7 +64,7 @@ class VideoWatch {
 
   /// Descriptor for poll(), readable when an event is pending.
   [[nodiscard]] int fd() const;
-  /// The next event; empty if none arrived in time.
+  /// Returns the next event; empty if none arrived in time.
   [[nodiscard]] std::optional<VideoEvent> next(std::chrono::milliseconds timeout);
 
  private:
