@@ -1,32 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contrast sensitivity of the eye in absolute units. The model is a linear filter H followed by white noise of 1 per
-// square degree: docs/method/observer.md names the source of every parameter.
+// square degree. docs/method/observer.md names the source of every parameter.
 #pragma once
 
 #include "acquisition/base/result.h"
 
 namespace todbench {
 
-/// A person's eye. Defaults: hvs-2.
+/// Parameters of a person's eye. The default values are those of hvs-2.
 struct EyeParameters {
   double sensitivity = 1202;            ///< K: d' per unit contrast per degree, detection
-  double photon_noise_td = 575;         ///< E0: photon noise equals neural noise at this retinal illuminance
-  double inhibition_per_degree = 7.36;  ///< u0: end of lateral inhibition, cycles per degree
+  double photon_noise_td = 575;         ///< E0: retinal illuminance at which photon noise equals neural noise
+  double inhibition_per_degree = 7.36;  ///< u0: upper end of lateral inhibition, cycles per degree
   double critical_cycles = 3.44;        ///< n_c: detection sums over an area of pi (n_c / u)^2
-  double area_exponent = 0.284;         ///< gamma: growth of the effective area beyond the critical one
-  double uncertainty_channels = 500;    ///< M: channels among which the relevant ones are unknown to the person
-  double contrast_noise = 0.03;         ///< kappa: noise in proportion to the response to the target
+  double area_exponent = 0.284;         ///< gamma: growth of the effective area beyond the critical area
+  double uncertainty_channels = 500;  ///< M: number of channels among which the person does not know the relevant ones
+  double contrast_noise = 0.03;       ///< kappa: noise proportional to the response to the target
   double age_years = 30;
-  double field_deg2 = 30;  ///< adapting field, for the pupil
+  double field_deg2 = 30;  ///< area of the adapting field, for the pupil
   bool operator==(const EyeParameters&) const = default;
 };
 
 /// Checks the parameters. Error: `invalid_input` with the parameter that is out of its range.
 [[nodiscard]] Result<void> validate(const EyeParameters& eye);
 
-/// d' that a detector of `channels` equally sensitive channels needs for 84 % correct answers in two-alternative
-/// forced choice, by the rule of the largest response (Pelli 1985); 1.41 for one channel, 3.73 for 500. Channels are
-/// continuous, at least 1. Error about 1e-6.
+/// Returns the d' that a detector of `channels` equally sensitive channels needs for 84 % correct answers in
+/// two-alternative forced choice. The detector chooses the largest response (Pelli 1985). 1.41 for one channel, 3.73
+/// for 500. `channels` may be fractional, at least 1. Error about 1e-6.
 [[nodiscard]] double detection_d_prime(double channels);
 
 /// The filter H of an eye adapted to a luminance. Immutable, thread-safe.
@@ -36,15 +36,16 @@ class EyeFilter {
   EyeFilter(const EyeParameters& eye, double luminance_cd_m2);
 
   [[nodiscard]] double pupil_mm() const { return pupil_mm_; }
-  /// H^2 at a frequency in cycles per degree, for detection of a known pattern: d'^2 per square of the contrast and
-  /// square degree. 0 at frequency 0 and from the diffraction limit on.
+  /// Returns H^2 at a frequency in cycles per degree, for detection of a known pattern: d'^2 per squared contrast and
+  /// square degree. It is 0 at frequency 0 and from the diffraction limit upwards.
   [[nodiscard]] double detection_power(double frequency_per_degree) const;
-  /// H^2 of identification: the detection power times (d'(M) / d'(1))^2 with M channels of uncertainty. The fit of
-  /// detection includes the uncertainty; an observer that searches explicitly has less uncertainty.
+  /// Returns H^2 for identification: the detection power times (d'(M) / d'(1))^2 with M channels of uncertainty. The
+  /// fit of detection includes the uncertainty, but an observer that searches explicitly has less uncertainty.
   [[nodiscard]] double identification_power(double frequency_per_degree) const {
     return identification_gain_ * detection_power(frequency_per_degree);
   }
-  /// d' of a Gabor pattern of contrast 1: frequency in cycles per degree, Gaussian envelope exp(-r^2 / (2 sigma^2)).
+  /// Returns d' of a Gabor pattern of contrast 1: frequency in cycles per degree, Gaussian envelope exp(-r^2 / (2
+  /// sigma^2)).
   [[nodiscard]] double gabor_d_prime(double frequency_per_degree, double sigma_deg) const;
 
  private:

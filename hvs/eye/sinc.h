@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Transfer function of a sample that is held.
+// Transfer function of sample and hold.
 #pragma once
 
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace todbench {
 
-/// sin(pi x) / (pi x), 1 at x = 0.
+/// Returns sin(pi x) / (pi x), and 1 at x = 0.
 [[nodiscard]] inline double sinc(double x) {
   return x == 0 ? 1.0 : std::sin(std::numbers::pi * x) / (std::numbers::pi * x);
 }
