@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Probability of each answer to a patch, over the white noise that an observer adds.
+// Probability of each answer to a patch, averaged over the white noise that an observer adds.
 #pragma once
 
 #include <array>
@@ -20,18 +20,18 @@ struct AnswerRoom {
   std::span<float> direction;  ///< ScoreNoise::rank() elements
 };
 
-/// Returns the share of the noise for which each alternative has the largest score. `scores` are those of the patch
-/// without the noise, as its bank gives them; `levels` are the standard deviations of the noise, in the same unit.
+/// Returns the probability that each alternative has the largest score. `scores`: the bank's scores of the patch
+/// without the noise; `levels`: standard deviations of the noise, in the same unit.
 ///
-/// Without noise the best alternative has probability 1 (equal ones share it). With noise a template takes part only if
-/// it can come within five standard deviations of the best one: score_best - score < 5 sd sqrt(2 (1 - rho)) with rho
-/// the correlation of the two scores. An alternative that is the only one left has probability 1 (error below 3e-7 for
-/// each omitted template).
+/// Without noise the best alternative has probability 1; equally good alternatives share it. With noise, a template is
+/// considered only if it is within five standard deviations of the best one: score_best - score < 5 sd sqrt(2 (1 -
+/// rho)), where rho is the correlation of the two scores. If only one alternative remains, it has probability 1 (error
+/// below 3e-7 for each omitted template).
 ///
-/// Otherwise the noise is drawn in the directions across the difference of the two best alternatives' templates. Along
-/// it, where the decision varies most, it is drawn in eight strata of equal probability, one value in each (conditional
-/// and stratified sampling, Owen 2013, 8.7 and 8.4). `draws` is rounded up to a multiple of eight, at least 32.
-/// Allocates no memory. Results are the same bits on every instruction set.
+/// Otherwise the noise is drawn at random in the directions perpendicular to the difference of the two best
+/// alternatives' templates. Along this difference, where the decision varies most, it is drawn in eight strata of equal
+/// probability, one value in each (conditional and stratified sampling, Owen 2013, 8.7 and 8.4). `draws` is rounded up
+/// to a multiple of eight, at least 32. Allocates no memory. Results are bit-identical on every instruction set.
 [[nodiscard]] AnswerProbabilities answer_probabilities(const ScoreNoise& noise, std::span<const float> scores,
                                                        const ScoreNoiseLevels& levels, const RandomStream& stream,
                                                        int draws, const AnswerRoom& room);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inner loop of template banks: many sums of products at once.
+// Inner loop of template banks: computes many sums of products at once.
 #pragma once
 
 #include <array>
@@ -7,15 +7,16 @@
 
 namespace todbench {
 
-/// sums[t] = sum over s of factors[s] values[s][t], t = 0..TemplateBank::block-1, s in increasing order: the same bits
-/// on every instruction set.
+/// Computes sums[t] = sum over s of factors[s] values[s][t], t = 0..TemplateBank::block-1, in increasing order of s.
+/// Bit-identical on every instruction set.
 void block_product(const float* values, const float* factors, std::size_t count, float* sums);
 
-/// Number of sets of factors of add_block_products().
+/// Number of sets of factors in one call of add_block_products().
 inline constexpr std::size_t products_at_once = 4;
-/// Continues the sums of block_product() for several factors with the same values, which are read once. Started at 0
-/// and called for successive parts of values and factors, it gives the same bits. A caller with many factors should
-/// pass short parts to all of them, so that the values come from the nearest cache instead of from memory.
+/// Continues the sums of block_product() for several sets of factors. The values are read only once. If the sums start
+/// at 0 and the calls cover successive parts of values and factors, the result is bit-identical to block_product(). A
+/// caller with many sets should pass short parts to all of them, so that the values come from the nearest cache and not
+/// from memory.
 void add_block_products(const float* values, const std::array<const float*, products_at_once>& factors,
                         std::size_t count, const std::array<float*, products_at_once>& sums);
 

@@ -14,41 +14,43 @@ namespace todbench {
 
 /// Templates of an observer with an eye, as continuous patterns.
 struct EyeTemplates {
-  Alternatives shapes{};      ///< of the target's size, in displayed samples
+  Alternatives shapes{};      ///< alternatives at the target's size, in displayed samples
   int steps = 8;              ///< search places per sample
-  int reach = 8;              ///< search steps each way
+  int reach = 8;              ///< search steps in each direction
   double sample_deg = 0;      ///< side of a displayed sample
   double contrast_noise = 0;  ///< kappa
   double template_scale = 1;  ///< d'^2 at contrast 1 per unit of the bank's scores
   ViewedDisplay display;
 };
 
-/// White noise of 1 per square degree behind the eye's filter H. The score of template i has the covariance G_ij = <H
-/// F_i, H F_j> with that of template j, F being the target behind the display; G_ii is d'^2 of the ideal target at
-/// contrast 1. Noise in proportion to the contrast multiplies the standard deviation by sqrt(1 + kappa^2 c^2 G_ii).
-/// Immutable, thread-safe.
+/// White noise of 1 per square degree behind the eye's filter H. The scores of templates i and j have the covariance
+/// G_ij = <H F_i, H F_j>, where F is the target behind the display. G_ii is d'^2 of the ideal target at contrast 1.
+/// Noise proportional to the contrast multiplies the standard deviation by sqrt(1 + kappa^2 c^2 G_ii). Immutable,
+/// thread-safe.
 class EyeNoise {
  public:
-  /// Largest share of a score's variance that the draws may miss. Scores of two small triangles differ by about 1e-2 of
+  /// Largest share of a score's variance that the draws may omit. Scores of two small triangles differ by about 1e-2 of
   /// their variance.
   static constexpr double max_left_out = 3e-4;
 
-  /// `power` is H^2 times the square of the display's transfer, in cycles per displayed sample.
+  /// `power`: H^2 times the square of the display's transfer, in cycles per displayed sample.
   EyeNoise(EyeTemplates templates, const FilterTable& power);
 
-  /// G of two templates, with the numbering of the bank.
+  /// Returns G of two templates, which are numbered as in the bank.
   [[nodiscard]] double covariance(std::size_t first, std::size_t second) const;
-  /// d'^2 of the ideal target at luminance contrast 1.
+  /// Returns d'^2 of the ideal target at luminance contrast 1.
   [[nodiscard]] double energy() const { return energy_; }
-  /// Standard deviation of the noise in a score of the bank, in units of the contrast, for a target of `contrast_k`.
+  /// Returns the standard deviation of the noise in a score of the bank, in units of the contrast, for a target of
+  /// `contrast_k`.
   [[nodiscard]] double sd(double contrast_k) const;
-  /// Standard deviation for an eye of `gain` times the sensitivity, with another noise in proportion to the contrast.
+  /// Same for an eye with `gain` times the sensitivity and another value of kappa, `contrast_noise`.
   [[nodiscard]] double sd(double contrast_k, double gain, double contrast_noise) const;
-  /// Number of independent normal numbers in one draw.
+  /// Returns the number of independent normal numbers in one draw.
   [[nodiscard]] std::size_t rank() const { return columns_.size(); }
-  /// Columns of the factor of the covariance relative to energy(): one value for each template.
+  /// Returns the columns of the factor of the covariance relative to energy(): one value for each template.
   [[nodiscard]] const std::vector<std::vector<double>>& columns() const { return columns_; }
-  /// Adds `sd` times the scores of the normal numbers: rank() numbers, the bank's padded_templates() scores.
+  /// Adds `sd` times the scores of the normal numbers. `numbers` has rank() elements, `scores` has the bank's
+  /// padded_templates().
   void add(std::span<const float> numbers, float sd, std::span<float> scores) const;
 
  private:
@@ -60,7 +62,8 @@ class EyeNoise {
 
   EyeTemplates templates_;
   double energy_ = 0;
-  /// Alternative o is the first one after o quarter turns, and the filter allows it: four tables hold everything.
+  /// Alternative o is alternative 0 after o quarter turns, and the filter has the same symmetry: four tables are then
+  /// sufficient.
   bool turned_ = false;
   std::vector<std::vector<double>> tables_;  ///< G by pair of alternatives and displacement
   std::vector<std::vector<double>> columns_;

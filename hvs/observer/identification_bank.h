@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Templates of arbitrary shapes for an observer that identifies them: every alternative from every side, at every place
-// of the search.
+// Templates of an observer that identifies arbitrary shapes. There is one for every side of every alternative at every
+// search place.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@
 
 namespace todbench {
 
-/// One alternative: its edges from every side, in displayed samples, near the origin. Levels in any unit.
+/// One alternative: its edges as viewed from every side, in displayed samples, near the origin. Levels in any unit.
 using AlternativeAspects = std::vector<std::vector<StepEdge>>;
 
 /// A camera whose blur the templates include: transfer function in cycles per displayed sample, and its cut-off.
@@ -25,70 +25,72 @@ struct KnownCamera {
   double band_per_sample = 3;
 };
 
-/// Returns a picture minus its background. The background is the mean of the picture or, for an eye, of its outermost
-/// samples: an eye does not respond to a uniform field, but it responds to part of a large target's mean.
+/// Returns a picture minus its background. The background is the mean of the picture or, for an eye, the mean of its
+/// outermost samples. An eye does not respond to a uniform field, but it responds to a part of the mean of a large
+/// target.
 [[nodiscard]] cv::Mat1f without_background(const TemplateObserverSpec& spec, cv::Mat1f picture);
 
-/// Side of the search window, in samples, even.
+/// Returns the side of the search window in samples, an even number.
 [[nodiscard]] int identification_window_samples(const TemplateObserverSpec& spec,
                                                 std::span<const AlternativeAspects> alternatives,
                                                 int samples_per_pitch);
 
-/// The template observer generalised from triangles. A template is the ideal picture behind display and blur of the
-/// eye, without its mean and of unit norm, at every place of the search; the score of an alternative is the largest
-/// over its sides and places.
+/// The template observer generalised from triangles to other shapes. A template is the ideal picture behind display and
+/// blur of the eye, without its mean and with unit norm, at one place of the search. The score of an alternative is the
+/// largest score over its sides and places.
 ///
 /// Blur affects the four orientations of a triangle equally, but it can make one shape similar to another. The
-/// templates can therefore include the blur of a known camera, which then replaces display and eye. Without noise the
-/// shown alternative then has the largest score (Cauchy-Schwarz inequality).
+/// templates can therefore include the blur of a known camera, which then replaces display and eye. In that case the
+/// shown alternative has the largest score if there is no noise (Cauchy-Schwarz inequality).
 ///
-/// The templates of one picture at all places, 289 in hvs-1, are sums of fewer orthonormal ones: 30 to 70 for triangles
-/// up to 4 samples. The residual of every template is below 1e-4 of its norm, so the error of a score is at most that
-/// fraction of the norm of the patch.
+/// The templates of one picture at all places (289 in hvs-1) are linear combinations of fewer orthonormal ones: 30 to
+/// 70 for triangles up to 4 samples. The residual of every template is below 1e-4 of its norm, so the error of a score
+/// is at most that fraction of the norm of the patch.
 ///
-/// With an eye (hvs-2) a template is the ideal picture behind display and eye, divided by its own norm behind the eye:
-/// norms of triangles are equal, those of different shapes are not. Cameras and aspects precede display and eye. The
-/// noise of the eye is white behind H. Its scores are those of white pictures on a lattice that is fine enough for the
-/// eye, with templates to which display and H are applied once. Immutable, thread-safe.
+/// With an eye (hvs-2) a template is the ideal picture behind display and eye, divided by its own norm behind the eye.
+/// Triangles have equal norms; different shapes do not. Cameras and sides precede display and eye. The noise of the eye
+/// is white behind H. Its scores are computed from white pictures on a lattice that is fine enough for the eye, with
+/// templates to which display and H are applied once. Immutable, thread-safe.
 class IdentificationBank {
  public:
   /// Computes the templates. `camera`: empty for ideal templates, as for triangles. Error: `invalid_input` (fewer than
-  /// two alternatives, one without sides or without edges, or templates that need over 1 GiB).
+  /// two alternatives, one without sides or without edges, or templates that need more than 1 GiB).
   [[nodiscard]] static Result<IdentificationBank> build(const TemplateObserverSpec& spec,
                                                         std::span<const AlternativeAspects> alternatives,
                                                         int samples_per_pitch,
                                                         const std::optional<KnownCamera>& camera = std::nullopt);
 
-  /// Side of the square window, in samples, even.
+  /// Returns the side of the square window in samples, an even number.
   [[nodiscard]] int window_samples() const { return window_; }
   [[nodiscard]] std::size_t alternatives() const { return first_aspect_.size() - 1; }
-  /// Sides of all alternatives together.
+  /// Returns the number of sides of all alternatives together.
   [[nodiscard]] std::size_t views() const { return aspects_.size(); }
-  /// Length of a score vector.
+  /// Returns the length of a score vector.
   [[nodiscard]] std::size_t scores() const { return aspects_.size() * static_cast<std::size_t>(places_ * places_); }
-  /// Scores of all templates for a patch of window_samples()^2 values whose mean is 0.
+  /// Returns the scores of all templates for a patch of window_samples()^2 values whose mean is 0.
   [[nodiscard]] std::vector<float> project(const cv::Mat1f& patch) const;
-  /// project() of each patch, with the same bits. Faster than single calls: the templates of large targets, hundreds of
-  /// megabytes, are read once for all patches.
+  /// Returns project() of each patch, bit-identical. It is faster than single calls, because the templates of large
+  /// targets (hundreds of megabytes) are read once for all patches.
   [[nodiscard]] std::vector<std::vector<float>> project_all(std::span<const cv::Mat1f> patches) const;
-  /// Side of a picture of the noise of the eye, in points of the fine lattice; 0 without an eye.
+  /// Returns the side of a picture of the noise of the eye, in points of the fine lattice; 0 without an eye.
   [[nodiscard]] int eye_points() const { return eye_ ? eye_->window_ : 0; }
-  /// Scores of the noise of the eye, of standard deviation 1: of white pictures of standard deviation 1 with
-  /// eye_points() on a side. Precondition: an eye.
+  /// Returns scores of the noise of the eye with standard deviation 1. `white`: white pictures of standard deviation 1
+  /// with eye_points() on a side. Precondition: an eye.
   [[nodiscard]] std::vector<std::vector<float>> project_eye(std::span<const cv::Mat1f> white) const {
     return eye_->project_all(white);
   }
-  /// Standard deviation of the noise of the eye in a score of pictures in kelvin, while a view is shown with the
-  /// contrast `contrast_k`, that is `level` in the unit of its edges. `seeing`: the observer of the bank, or one that
-  /// differs from it in sensitivity, channels or contrast noise only. Precondition: an eye.
+  /// Returns the standard deviation of the noise of the eye in a score of pictures in kelvin. A view is shown with the
+  /// contrast `contrast_k`, which is `level` in the unit of its edges. `seeing`: the observer of the bank, or an
+  /// observer that differs from it only in sensitivity, channels or contrast noise. Precondition: an eye.
   [[nodiscard]] double eye_noise_k(const TemplateObserverSpec& seeing, std::size_t alternative, std::size_t aspect,
                                    double contrast_k, double level) const;
-  /// d'^2 of a view at luminance contrast 1, for the observer of the bank; `level` as in eye_noise_k().
+  /// Returns d'^2 of a view at luminance contrast 1, for the observer of the bank; `level` as in eye_noise_k().
   [[nodiscard]] double eye_energy(std::size_t alternative, std::size_t aspect, double level) const;
-  /// Index of the alternative with the largest element of signal + first_scale * first + second_scale * second.
+  /// Returns the index of the alternative with the largest element of signal + first_scale * first + second_scale *
+  /// second.
   [[nodiscard]] std::size_t best(std::span<const float> signal, std::span<const float> first, float first_scale,
                                  std::span<const float> second, float second_scale) const;
-  /// The largest element of every alternative, in order.
+  /// Writes the largest element of every alternative, in order.
   void largest_of_each(std::span<const float> signal, std::span<const float> first, float first_scale,
                        std::span<const float> second, float second_scale, std::span<float> largest) const;
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Identification of a shape by the naked eye: which of four quarter turns is shown, at a known place, without display
-// and sensor. Landolt rings and triangles.
+// Identification of a shape by the naked eye, without display and sensor. The observer identifies which of four quarter
+// turns is shown at a known place. The shapes are Landolt rings and triangles.
 #pragma once
 
 #include <array>
@@ -13,32 +13,34 @@
 
 namespace todbench {
 
-/// A Landolt ring with the gap at the right: width of gap and stroke 1, outer diameter 5, its centre at the origin.
+/// Returns a Landolt ring with the gap at the right: width of gap and stroke 1, outer diameter 5, centre at the origin.
 [[nodiscard]] Polygon landolt_ring();
 
 /// A shape in four quarter turns. The score of an orientation is <H F_i, c H F + z>, with the noise of hvs-2.
 /// Immutable, thread-safe.
 class NakedEyeShape {
  public:
-  /// A polygon of any size. It is used by its square root of area.
+  /// Precomputes a polygon of any size. Sizes in the other functions are the square root of its area.
   explicit NakedEyeShape(const Polygon& shape);
 
-  /// G_00 .. G_03: products <H F_0, H F_o> at contrast 1 of a shape with this square root of area.
+  /// Returns G_00 .. G_03: products <H F_0, H F_o> at contrast 1 of a shape with this square root of area.
   [[nodiscard]] std::array<double, 4> products(const EyeFilter& eye, double size_deg) const;
-  /// Probability of a correct answer. `contrast`: luminance difference over the luminance that the eye adapts to,
-  /// without sign. `contrast_noise`: kappa.
+  /// Returns the probability of a correct answer. `contrast`: luminance difference divided by the luminance to which
+  /// the eye adapts, without sign. `contrast_noise`: kappa.
   [[nodiscard]] double probability_correct(const EyeFilter& eye, double contrast_noise, double contrast,
                                            double size_deg) const;
-  /// Size (square root of area) in degrees at which a share of the answers is correct; empty if it is not between 0.001
-  /// and 3 degrees. The share is 75 % for a TOD. Tests of acuity use 62.5 %, half way from chance.
+  /// Returns the size (square root of area) in degrees at which `share_correct` of the answers are correct; empty if it
+  /// is not between 0.001 and 3 degrees. The share is 75 % for a TOD. Acuity tests use 62.5 %, half way between chance
+  /// and 100 %.
   [[nodiscard]] std::optional<double> threshold_deg(const EyeFilter& eye, double contrast_noise, double contrast,
                                                     double share_correct) const;
-  /// Contrast at which that share is correct for a shape of this size; empty if it is not between 1e-6 and 10.
+  /// Returns the contrast at which that share is correct for a shape of this size; empty if it is not between 1e-6 and
+  /// 10.
   [[nodiscard]] std::optional<double> threshold_contrast(const EyeFilter& eye, double contrast_noise, double size_deg,
                                                          double share_correct) const;
 
  private:
-  /// Integral over all directions of F_0 F_o*, of the shape of area 1, at the frequencies (i + 1/2) step.
+  /// Integral of F_0 F_o* over all directions, for the shape of area 1, at the frequencies (i + 1/2) step.
   std::vector<std::array<double, 4>> around_;
   std::vector<QuadratureNode> rule_;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Range of the parameters of an observer with an eye that public data do not determine.
+// Range of those parameters of an observer with an eye that public data do not determine.
 #pragma once
 
 #include <array>
@@ -14,20 +14,20 @@
 
 namespace todbench {
 
-/// An observer at both ends of the range of its open parameters together: sensitivity +-4 dB, uncertainty of 100 to
-/// 3000 channels, contrast noise 0 to 0.07, sensor-noise factor 1.1 to 3.2. A parameter outside its range is not
-/// changed. The acuity is monotone in each of them, so that these are the ends of the acuity as well.
+/// An observer at both ends of the joint range of its open parameters: sensitivity +-4 dB, uncertainty of 100 to 3000
+/// channels, contrast noise 0 to 0.07, sensor-noise factor 1.1 to 3.2. A parameter outside its range is not changed.
+/// The acuity is monotone in each parameter, so these are also the ends of the acuity.
 struct OpenParameterRange {
   TemplateObserverSpec best, worst;
 };
 
 /// Returns the range; empty for an observer without an eye.
 [[nodiscard]] std::optional<OpenParameterRange> open_parameter_range(const TemplateObserverSpec& spec);
-/// The best and then the worst observer of the range; empty without an eye.
+/// Returns the best and then the worst observer of the range; empty without an eye.
 [[nodiscard]] std::vector<TemplateObserverSpec> open_ends(const TemplateObserverSpec& spec);
 
-/// Results of `find`, which returns a Result, for the best and then the worst observer of the range; empty without an
-/// eye. Errors: those of `find`.
+/// Returns the results of `find`, which returns a Result, for the best and then the worst observer of the range. Empty
+/// without an eye. Errors: those of `find`.
 template <typename Find>
 [[nodiscard]] auto at_open_ends(const TemplateObserverSpec& spec, const Find& find) -> Result<
     std::optional<std::array<typename std::invoke_result_t<const Find&, const TemplateObserverSpec&>::value_type, 2>>> {
@@ -42,8 +42,9 @@ template <typename Find>
   return std::optional(std::array<Found, 2>{std::move(found[0]), std::move(found[1])});
 }
 
-/// Spread of a quantity: the smallest and the largest of its values at both ends and, if it is not monotone in the
-/// parameters, of the observer itself. Empty if one of them is missing. The spread is not a confidence interval.
+/// Returns the spread of a quantity: the smallest and the largest of its values at both ends. If the quantity is not
+/// monotone in the parameters, pass the value of the observer itself too. Empty if one of the values is missing. The
+/// spread is not a confidence interval.
 [[nodiscard]] std::optional<std::pair<double, double>> spread_of(std::initializer_list<std::optional<double>> values);
 
 }  // namespace todbench

@@ -10,9 +10,9 @@
 
 namespace todbench {
 
-/// Returns columns c_k with sum over k of c_k c_k' equal to the covariance, until every variable has at most
-/// `max_left_out` of variance left, or there are `most` columns. `variances` is the diagonal; `column_of` (index)
-/// returns a column of the covariance.
+/// Returns columns c_k whose sum over k of c_k c_k' approximates the covariance. It stops when every variable has at
+/// most `max_left_out` of variance left, or when there are `most` columns. `variances`: the diagonal;
+/// `column_of`(index): a column of the covariance.
 template <typename ColumnOf>
 [[nodiscard]] std::vector<std::vector<double>> pivoted_cholesky(std::vector<double> variances, double max_left_out,
                                                                 std::size_t most, ColumnOf column_of) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Template scores of white noise from few random numbers, through a factor of the templates' product matrix.
+// Template scores of white noise from few random numbers, through a factor of the matrix of template products.
 #pragma once
 
 #include <cmath>
@@ -21,57 +21,58 @@ struct ScoreNoiseLevels {
 /// Whether an observer adds white noise to the samples.
 enum class AddedWhiteNoise { no, yes };
 
-/// Factor of the covariance of template scores. Scores of white noise of sd 1 per sample are jointly normal, with the
-/// products of the templates as covariance. Templates of one shape at neighbouring places are nearly equal, so this
-/// matrix has a small effective rank: a pivoted Cholesky decomposition (Harbrecht, Peters and Schneider 2012) ends when
-/// every template has at most `max_left_out` of its variance left. Immutable, thread-safe.
+/// Factor of the covariance of template scores. The scores of white noise with sd 1 per sample are jointly normal, and
+/// their covariance is the matrix of template products. Templates of one shape at neighbouring places are nearly equal,
+/// so this matrix has a small effective rank: a pivoted Cholesky decomposition (Harbrecht, Peters and Schneider 2012)
+/// ends when every template has at most `max_left_out` of its variance left. Immutable, thread-safe.
 ///
-/// With an eye, the random numbers of the eye's noise come first, then those of white noise; weigh() scales both to
+/// With an eye, the random numbers of the eye's noise come first, then those of the white noise. weigh() scales both to
 /// their shares of the total.
 ///
-/// Rows of scores begin anew with each alternative: alternative o at place p is element o * row() + p.
+/// Each alternative begins a new row of scores: alternative o at place p is element o * row() + p.
 class ScoreNoise {
  public:
-  /// Largest share of a score's variance that may be missing. Scores of two small blurred triangles differ by little
+  /// Largest share of a score's variance that may be missing. Scores of two small blurred triangles differ by slightly
   /// more than 1e-2 of their variance.
   static constexpr double max_left_out = 1e-5;
 
   explicit ScoreNoise(const TemplateBank& bank, AddedWhiteNoise white = AddedWhiteNoise::yes);
 
-  /// Number of independent normal numbers in one draw.
+  /// Returns the number of independent normal numbers in one draw.
   [[nodiscard]] std::size_t rank() const { return rank_; }
-  /// Places rounded up to whole blocks.
+  /// Returns the number of places, rounded up to whole blocks.
   [[nodiscard]] std::size_t row() const { return row_; }
   [[nodiscard]] std::size_t alternatives() const { return alternatives_; }
-  /// row() times alternatives().
+  /// Returns row() times alternatives().
   [[nodiscard]] std::size_t size() const { return row_ * alternatives_; }
 
-  /// Rearranges scores of a bank (padded_templates() elements) into rows: size() elements, `padding` at the unused
-  /// ones.
+  /// Rearranges scores of a bank (padded_templates() elements) into rows of size() elements in total. Unused elements
+  /// are set to `padding`.
   void in_rows(std::span<const float> scores, float padding, std::span<float> rows) const;
-  /// The factor of the templates from element `first` (a multiple of TemplateBank::block): rank() times
-  /// TemplateBank::block values, number by number.
+  /// Returns the factor of the templates from element `first` (a multiple of TemplateBank::block): rank() times
+  /// TemplateBank::block values, ordered by random number.
   [[nodiscard]] const float* factor(std::size_t first) const { return values_.data() + first * rank_; }
-  /// The factor of one template: rank() numbers; products with those of other templates are the covariances.
+  /// Copies the factor of one template: rank() numbers. Its product with the factor of another template is their
+  /// covariance.
   void copy_factor(std::size_t index, std::span<float> numbers) const;
-  /// Multiplies numbers by the shares of eye and white noise in the total. Without an eye it changes nothing.
+  /// Multiplies numbers by the shares of eye and white noise in the total. No effect without an eye.
   void weigh(const ScoreNoiseLevels& levels, std::span<float> numbers) const;
   /// Shares of eye and white noise in the variance of total noise 1.
   struct Shares {
     float eye = 1, white = 0;
   };
   [[nodiscard]] Shares shares(const ScoreNoiseLevels& levels) const;
-  /// Variance of a score of total noise 1; 1 without an eye.
+  /// Returns the variance of a score for total noise 1; 1 without an eye.
   [[nodiscard]] float variance(const Shares& shares, std::size_t index) const {
     return squares_.empty() ? 1 : shares.eye + shares.white * squares_[index];
   }
-  /// Scores of all templates for the normal numbers `numbers`: size() elements.
+  /// Computes the scores of all templates for the normal numbers `numbers`: size() elements.
   void scores(std::span<const float> numbers, std::span<float> out) const;
 
  private:
   std::size_t rank_ = 0, eye_rank_ = 0, places_ = 0, row_ = 0, alternatives_ = 0;
   std::vector<float> values_;   ///< [block of templates][number][template in block]
-  std::vector<float> squares_;  ///< of the templates; only with an eye
+  std::vector<float> squares_;  ///< squared norm of each template; only with an eye
 };
 
 }  // namespace todbench

@@ -8,20 +8,21 @@
 
 namespace todbench {
 
-/// Pictures behind display and H, as means over the area of each displayed sample. The noise of the eye in such a mean
-/// is independent of the others, of standard deviation 1 over the side of a sample in degrees. Immutable, thread-safe.
+/// Filters pictures with display and H. A value is the mean over the area of a displayed sample. The noise of the eye
+/// in such a mean is independent of the others; its standard deviation is 1 / (side of a sample in degrees). Immutable,
+/// thread-safe.
 class SeenPicture {
  public:
-  /// Square pictures of `side` samples. Precondition: an eye with a display.
+  /// Prepares the filter for square pictures of `side` samples. Precondition: an eye with a display.
   SeenPicture(const TemplateObserverSpec& spec, int side);
-  /// Returns a picture behind display and eye. Its background, the mean of its outermost samples, continues beyond its
-  /// border.
+  /// Returns a picture behind display and eye. The background of the picture, the mean of its outermost samples,
+  /// continues beyond its border.
   [[nodiscard]] cv::Mat1f of(const cv::Mat1f& picture) const;
 
  private:
   TemplateObserverSpec spec_;
-  int period_;        ///< of the transform, at least twice the side
-  cv::Mat1f factor_;  ///< of each frequency of the transform
+  int period_;        ///< period of the transform, at least twice the side
+  cv::Mat1f factor_;  ///< factor of each frequency of the transform
 };
 
 }  // namespace todbench

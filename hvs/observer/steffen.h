@@ -8,8 +8,9 @@
 
 namespace todbench {
 
-/// Value at x in [0, 1] between y[1] and y[2] of four values at -1, 0, 1, 2: a cubic with a continuous first derivative
-/// that never leaves the range of y[1] and y[2] (Steffen 1990, Astron. Astrophys. 239, 443, eq. 11).
+/// Returns the interpolated value at x in [0, 1] between y[1] and y[2]; the four values are at -1, 0, 1, 2. The
+/// interpolant is a cubic with a continuous first derivative that never leaves the range of y[1] and y[2] (Steffen
+/// 1990, Astron. Astrophys. 239, 443, eq. 11).
 [[nodiscard]] inline double steffen(const std::array<double, 4>& y, double x) {
   const auto slope = [](double before, double after) {
     const double sign = (before > 0 ? 1.0 : -1.0) + (after > 0 ? 1.0 : -1.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The template observer: correlation with ideal shapes behind the viewing filter, and search for the position. hvs-1
-// has a blur and internal noise in proportion to the contrast, hvs-2 a display and an eye.
+// The template observer: it correlates a patch with ideal shapes behind the viewing filter, and searches for the
+// position. hvs-1 has a blur and internal noise proportional to the contrast; hvs-2 has a display and an eye.
 #pragma once
 
 #include <map>
@@ -25,18 +25,19 @@ struct TemplateObserverSpec {
   std::string name = "hvs-1";
   double blur_sigma_samples = 0.6;  ///< Gaussian of display and eye together, in displayed samples
   double internal_noise = 0.07;     ///< sd per displayed sample, relative to the contrast
-  double sensor_noise_factor = 1;   ///< enlargement of the sensor's noise by the observer (1.75 in human-like-1)
-  double search_range_samples = 1;  ///< each way, in x and y
+  double sensor_noise_factor = 1;   ///< factor by which the observer enlarges the sensor's noise (1.75 in human-like-1)
+  double search_range_samples = 1;  ///< in each direction, in x and y
   double search_step_samples = 0.125;
   double window_size_factor = 1.05;  ///< half window = ceil(factor * size + margin), in detector pitches
   double window_margin_pitch = 2;
-  /// Eye of the observer (hvs-2). It replaces blur_sigma_samples and internal_noise, which is then 0, and needs a
+  /// Eye of the observer (hvs-2). It replaces blur_sigma_samples and internal_noise, which is then 0. It requires a
   /// display.
   std::optional<EyeParameters> eye{};
-  double window_margin_arcmin = 0;         ///< the larger of both margins counts; only with an eye
-  std::optional<ViewedDisplay> display{};  ///< of the plan; only with an eye
-  /// Height of a displayed sample over its width, equal to that of the camera's pixels. Lengths in samples are in units
-  /// of the width; search range and step are in samples of each axis. Not part of a parameter set. An eye needs 1.
+  double window_margin_arcmin = 0;         ///< the larger of the two margins applies; only with an eye
+  std::optional<ViewedDisplay> display{};  ///< display of the plan; only with an eye
+  /// Ratio of height to width of a displayed sample, equal to the ratio of the camera's pixels. Lengths in samples are
+  /// in units of the width; search range and step are in samples of each axis. Not part of a parameter set. An eye
+  /// requires 1.
   double sample_aspect = 1;
   bool operator==(const TemplateObserverSpec&) const = default;
 };
@@ -44,15 +45,16 @@ struct TemplateObserverSpec {
 /// Checks the parameters. Error: `invalid_input` with the parameter that is out of its range.
 [[nodiscard]] Result<void> validate(const TemplateObserverSpec& spec);
 
-/// Computes the input of an observer's templates: the patch minus its background, in units of the contrast, with the
-/// observer's own noise per sample drawn from the trial's `noise`. The background is the mean of the patch or, with an
-/// eye, of its outermost samples (without_background()). `seen`: output, `room`: scratch memory; one value per sample.
+/// Computes the input of an observer's templates: the patch minus its background, in units of the contrast, plus the
+/// observer's own noise per sample, drawn from the trial's `noise`. The background is the mean of the patch or, with an
+/// eye, the mean of its outermost samples (without_background()). `seen`: output, `room`: scratch memory; one value per
+/// sample.
 void seen_patch(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k, const RandomStream& noise,
                 std::span<float> seen, std::span<float> room);
 /// Returns the alternative with the highest score; equal scores are decided by the trial's `noise`.
 [[nodiscard]] int winning_alternative(const Choice& choice, const RandomStream& noise);
 
-/// Observer that correlates a patch with ideal shapes at every place of its search.
+/// Observer that correlates a patch with ideal shapes at every search place.
 class TemplateObserver final : public Observer {
  public:
   /// Precondition: validate(spec) succeeds; 2..8 alternatives.
@@ -61,7 +63,7 @@ class TemplateObserver final : public Observer {
   [[nodiscard]] const TemplateObserverSpec& spec() const { return spec_; }
   [[nodiscard]] Result<std::shared_ptr<const PreparedObserver>> prepare(double size_samples,
                                                                         int samples_per_pitch) override;
-  /// The bank used by prepare(), for estimates that work on the templates themselves.
+  /// Returns the bank used by prepare(), for estimators that use the templates themselves.
   [[nodiscard]] Result<std::shared_ptr<const TemplateBank>> bank(double size_samples, int samples_per_pitch);
 
  private:

@@ -7,15 +7,15 @@
 
 namespace todbench {
 
-/// Filter of an observer's templates, in cycles per displayed sample, and how far it reaches.
+/// Filter of an observer's templates, in cycles per displayed sample, with its extent.
 struct ViewingFilter {
   TransferFunction transfer;
-  double band_per_sample = 0;  ///< above it the response of the filter is negligible
-  double reach_samples = 0;    ///< beyond it its response is nearly 0
+  double band_per_sample = 0;  ///< above this frequency the response of the filter is negligible
+  double reach_samples = 0;    ///< beyond this distance the spatial response is nearly 0
 };
 
-/// Without an eye: sample and hold times the Gaussian blur. With an eye: the square of display and H, because both act
-/// on the displayed patch and on the shape of the template. Precondition: an eye has a display.
+/// Returns the filter. Without an eye: sample and hold times the Gaussian blur. With an eye: the square of display and
+/// H, because both act on the displayed patch and on the shape of the template. Precondition: an eye has a display.
 [[nodiscard]] ViewingFilter viewing_filter(const TemplateObserverSpec& spec);
 
 }  // namespace todbench
