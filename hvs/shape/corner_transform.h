@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small inverse transform with sums in a fixed order: the same bits on every instruction set.
+// A small inverse transform with sums in a fixed order, bit-identical on every instruction set.
 #pragma once
 
 #include <complex>
@@ -9,32 +9,33 @@
 
 namespace todbench {
 
-/// exp(+2 pi i turns), with full accuracy for any number of turns.
+/// Returns exp(+2 pi i turns), with full accuracy for any number of turns.
 [[nodiscard]] std::complex<double> turn(double turns);
 
-/// Columns summed together in registers; columns are padded to whole groups of this size.
+/// Number of columns that are summed together in registers. Rows are padded to whole groups of this size.
 inline constexpr std::size_t lanes = 16;
 
 inline std::size_t whole_lanes(std::size_t columns) {
   return (columns + lanes - 1) / lanes * lanes;
 }
 
-/// A complex matrix with separate real and imaginary parts, rows padded with zeros to whole lanes, so that sums over
-/// rows vectorise.
+/// A complex matrix with separate real and imaginary parts. Rows are padded with zeros to whole groups of `lanes`, so
+/// that sums over rows vectorise.
 struct SplitMatrix {
   std::size_t stride;
   std::vector<double> re, im;
   SplitMatrix(std::size_t rows, std::size_t columns) : stride(whole_lanes(columns)), re(rows * stride), im(re.size()) {}
 };
 
-/// Two numbers processed element by element (GCC and Clang): a register that every x86-64 processor has. The vector is
-/// explicit because the compiler otherwise pairs real with imaginary parts and shuffles more than it computes. GCC 12
-/// keeps vectors that are wider than the registers in memory, which takes 13 to 40 times as long.
+/// Two numbers processed element by element (GCC and Clang): a register that every x86-64 processor has. The vector
+/// type is explicit because the compiler otherwise pairs real with imaginary parts and spends more time on shuffles
+/// than on arithmetic. GCC 12 keeps vectors that are wider than the registers in memory, which takes 13 to 40 times as
+/// long.
 using Two = double __attribute__((vector_size(16)));
 using TwoInMemory = double __attribute__((vector_size(16), aligned(8), may_alias));
 
-/// out[j][i] = Re sum_b sum_k folded[b][k] exp(2 pi i (b j + k i) / n), n = `points`, over the n rows b and the first n
-/// columns k; j and i within `size`, periodic beyond n.
+/// Returns out[j][i] = Re sum_b sum_k folded[b][k] exp(2 pi i (b j + k i) / n), n = `points`, over the n rows b and the
+/// first n columns k; j and i within `size`, periodic beyond n.
 [[nodiscard]] cv::Mat1d corner_of_inverse(const SplitMatrix& folded, int points, cv::Size size);
 
 }  // namespace todbench

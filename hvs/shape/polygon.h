@@ -7,14 +7,15 @@
 
 namespace todbench {
 
-/// Vertices in order, clockwise or not, without self-intersection. x right, y down; the unit is the caller's.
+/// Vertices in order, clockwise or counter-clockwise, without self-intersection. x right, y down; the unit is the
+/// caller's.
 using Polygon = std::vector<cv::Point2d>;
 
-/// Enclosed area, never negative.
+/// Returns the enclosed area, never negative.
 [[nodiscard]] double area(const Polygon& polygon);
-/// Centre of area.
+/// Returns the centroid of the area.
 [[nodiscard]] cv::Point2d centroid(const Polygon& polygon);
-/// The polygon scaled about the origin, then moved.
+/// Returns the polygon scaled about the origin, then moved.
 [[nodiscard]] Polygon placed(const Polygon& polygon, double scale, cv::Point2d offset);
 
 }  // namespace todbench

@@ -3,8 +3,9 @@
 // image is a triangle times optics and detector; the observer's template is the same triangle times its filter.
 //
 // The product is band-limited, so a sum over the lattice m / period represents the image exactly at every sampling
-// phase. The only approximations are periodicity (signal that wraps round, decreasing as period^-3 for a
-// diffraction-limited chain) and, if the filter has no limit of its own, the cut at the highest lattice frequency.
+// phase. There are only two approximations. One is periodicity: signal wraps around, with an error that decreases as
+// period^-3 for a diffraction-limited chain. The other is the cut at the highest lattice frequency, if the filter
+// itself is not band-limited.
 #pragma once
 
 #include <complex>
@@ -19,20 +20,20 @@ namespace todbench {
 /// Complex response at (u, w) in cycles per unit length; Hermitian: H(-u, -w) = conj H(u, w).
 using TransferFunction = std::function<std::complex<double>(double u, double w)>;
 
-/// A transfer function tabulated on a lattice (half plane u >= 0; the rest follows by symmetry). Immutable,
+/// A transfer function tabulated on a lattice, in the half plane u >= 0; the other half follows by symmetry. Immutable,
 /// thread-safe.
 class FilterTable {
  public:
   FilterTable(FrequencyLattice lattice, const TransferFunction& transfer);
   [[nodiscard]] const FrequencyLattice& lattice() const { return lattice_; }
-  /// Rows w = -band..band, columns u = 0..band.
+  /// Returns the table: rows w = -band..band, columns u = 0..band.
   [[nodiscard]] const cv::Mat_<std::complex<double>>& values() const { return values_; }
-  /// Number of columns of a row up to the last that is not zero; optics cut off on a circle.
+  /// Returns the number of columns of a row up to the last value that is not zero. Optics cut off on a circle.
   [[nodiscard]] std::size_t extent(int row) const { return extents_[static_cast<std::size_t>(row)]; }
-  /// Whether all values are real, and equal at w and -w, to the last bit.
+  /// Returns whether all values are real and bit-identical at w and -w.
   [[nodiscard]] bool even() const { return even_; }
-  /// Whether it is even, and equal at (u, w) and (w, u), so that the image of a shape rotated by 90 degrees is the
-  /// rotated image.
+  /// Returns whether the table is even and equal at (u, w) and (w, u). Then the image of a shape rotated by 90 degrees
+  /// is the rotated image.
   [[nodiscard]] bool turns_alike() const { return turns_alike_; }
 
  private:
@@ -43,27 +44,28 @@ class FilterTable {
 };
 
 /// Spectrum of one filtered polygon of contrast 1, to be sampled anywhere. Immutable, thread-safe; copies share the
-/// spectrum. If the shape is its own mirror image in x or y and the filter allows it, only half is computed and kept:
-/// the rows of -w are the conjugates of those of w.
+/// spectrum. If the shape is its own mirror image in x or y and the filter has the same symmetry, only half of the
+/// spectrum is computed and stored: the rows of -w are the conjugates of the rows of w.
 class PolygonImage {
  public:
-  /// `polygon` near the origin; it must fit into the period.
+  /// Computes the spectrum. `polygon` is near the origin and must fit into the period.
   PolygonImage(const Polygon& polygon, const FilterTable& filter);
 
-  /// Values at (first.x + i step, first.y + j step), i < columns, j < rows. Precondition: period / step is a whole
-  /// number. Cost: one pass over the spectrum and a small sum; no 2-D FFT of the fine grid.
+  /// Returns the values at (first.x + i step, first.y + j step), i < columns, j < rows. Precondition: period / step is
+  /// a whole number. Cost: one pass over the spectrum and a small sum; no 2-D FFT of the fine grid.
   [[nodiscard]] cv::Mat1d sample(cv::Point2d first, double step, cv::Size size) const;
 
-  /// The whole period at `per_unit` points per unit length: all per_unit^2 sampling phases at once, by one inverse FFT.
-  /// Point (j, i) is at (i, j) / per_unit, periodic (negative positions wrap). Rows are padded: not continuous.
-  /// Precondition: per_unit * period > 2 band.
+  /// Returns the whole period at `per_unit` points per unit length: all per_unit^2 sampling phases by one inverse FFT.
+  /// Point (j, i) is at (i, j) / per_unit, periodic (negative positions wrap). Rows are padded, so the matrix is not
+  /// continuous. Precondition: per_unit * period > 2 band.
   [[nodiscard]] cv::Mat1d fine_image(int per_unit) const;
   /// Same for the points -reach <= x, y < reach, in unit lengths; the other points of the result are undefined.
   [[nodiscard]] cv::Mat1d fine_image(int per_unit, int reach) const;
 
-  /// This image rotated by quarter turns, (x, y) -> (-y, x) each; the image of the rotated polygon if turns_alike().
+  /// Returns this image rotated by quarter turns, (x, y) -> (-y, x) each. It is the image of the rotated polygon if
+  /// turns_alike().
   [[nodiscard]] PolygonImage turned(int quarters) const;
-  /// Property of the filter.
+  /// Returns FilterTable::turns_alike() of the filter.
   [[nodiscard]] bool turns_alike() const { return turns_alike_; }
 
   [[nodiscard]] const FrequencyLattice& lattice() const { return lattice_; }
@@ -74,10 +76,10 @@ class PolygonImage {
 
   FrequencyLattice lattice_;
   bool turns_alike_;
-  bool half_ = false;                 ///< holds only the rows w = 0..band
-  int turns_ = 0;                     ///< quarter turns of the image against its spectrum
-  cv::Mat1d re_, im_;                 ///< parts of the spectrum, rows padded with zeros, so that sums over it vectorise
-  std::vector<std::size_t> extents_;  ///< per row: columns up to the last that is not zero, padding included
+  bool half_ = false;  ///< holds only the rows w = 0..band
+  int turns_ = 0;      ///< quarter turns of the image relative to its spectrum
+  cv::Mat1d re_, im_;  ///< parts of the spectrum; rows are padded with zeros so that sums over them vectorise
+  std::vector<std::size_t> extents_;  ///< per row: columns up to the last value that is not zero, padding included
 };
 
 }  // namespace todbench

@@ -18,14 +18,14 @@ struct FrequencyLattice {
   bool operator==(const FrequencyLattice&) const = default;
 };
 
-/// Fourier transform of the polygon's indicator at frequency (u, w), in cycles per unit length: the integral of exp(-2
-/// pi i (u x + w y)) over its area. A sum over edges with sinc factors; relative accuracy near 1e-15 times the number
-/// of turns, also for wave vectors perpendicular to an edge and at the origin.
+/// Returns the Fourier transform of the polygon's indicator at frequency (u, w), in cycles per unit length: the
+/// integral of exp(-2 pi i (u x + w y)) over its area. It is a sum over edges with sinc factors. The relative accuracy
+/// is near 1e-15 times the number of turns, also for wave vectors perpendicular to an edge and at the origin.
 [[nodiscard]] std::complex<double> polygon_spectrum(const Polygon& polygon, double u, double w);
 
-/// Fourier transform on a lattice, half plane u >= 0 (the rest follows by symmetry): rows w = -band..band, columns u =
-/// 0..band. Phase factors are separable and tabulated per row and column; agrees with the single-frequency form to
-/// 1e-13 of the area.
+/// Returns the Fourier transform on a lattice, half plane u >= 0 (the rest follows by symmetry): rows w = -band..band,
+/// columns u = 0..band. Phase factors are separable and tabulated per row and column. Agrees with the single-frequency
+/// form to 1e-13 of the area.
 [[nodiscard]] cv::Mat_<std::complex<double>> polygon_spectrum(const Polygon& polygon, const FrequencyLattice& lattice);
 
 /// Fourier transform on a lattice row by row, with separate real and imaginary parts, for callers that filter a row
@@ -36,7 +36,7 @@ class PolygonSpectrumRows {
   struct Row {
     std::span<const double> re, im;  ///< columns u = 0, 1, ...; valid until the next call
   };
-  /// The first `columns` of row `r`: w = r - band, r = 0 .. 2 band.
+  /// Returns the first `columns` of row `r`: w = r - band, r = 0 .. 2 band.
   [[nodiscard]] Row row(int r, std::size_t columns);
 
  private:

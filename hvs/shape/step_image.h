@@ -10,9 +10,9 @@
 
 namespace todbench {
 
-/// One period at `per_unit` points per unit length; point (j, i) is at (i, j) / per_unit, periodic. The edges must be
-/// closed, as those of visible_edges(), and near the origin. Equals the sum of PolygonImage::fine_image() over polygons
-/// that add up to the same picture. Precondition: per_unit * period > 2 band.
+/// Returns one period at `per_unit` points per unit length; point (j, i) is at (i, j) / per_unit, periodic. The edges
+/// must be closed, as visible_edges() returns them, and near the origin. Equals the sum of PolygonImage::fine_image()
+/// over polygons that add up to the same picture. Precondition: per_unit * period > 2 band.
 [[nodiscard]] cv::Mat1d fine_step_image(std::span<const StepEdge> edges, const FilterTable& filter, int per_unit);
 
 }  // namespace todbench
