@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scatter of answers about a fitted function: too much, too little, or as expected by chance.
+// Scatter of answers about a fitted function: too large, too small, or as expected by chance.
 #pragma once
 
 #include <span>
@@ -8,31 +8,34 @@
 
 namespace todbench {
 
-/// Sum of squares of standardised residuals over its expectation under the model.
+/// Ratio of the sum of squares of standardised residuals to its expectation under the model.
 struct Dispersion {
   double ratio = 1;  ///< observed / expected
-  /// Of the chi-square distribution that the ratio follows, over its mean; 0: no test is possible.
+  /// Degrees of freedom of the chi-square distribution that the ratio follows, divided by its mean; 0: no test is
+  /// possible.
   double degrees_of_freedom = 0;
-  double denominator_freedom = 0;  ///< of an expectation estimated from clusters; 0: exact expectation
-  /// Probability under the model of a ratio at least as large (p_more) or at most as large (p_less).
+  double denominator_freedom = 0;  ///< degrees of freedom of an expectation estimated from clusters; 0: exact
+                                   ///< expectation
+  /// Return the probability under the model of a ratio at least as large (p_more) or at most as large (p_less).
   [[nodiscard]] double p_more() const;
   [[nodiscard]] double p_less() const;
-  /// Ratio that is exceeded (upper) or undercut (lower) by chance with this probability.
+  /// Return the ratio that chance exceeds (upper) or undercuts (lower) with this probability.
   [[nodiscard]] double upper_limit(double probability) const;
   [[nodiscard]] double lower_limit(double probability) const;
 };
 
 /// Tests of the same answers for too much and for too little scatter. With clusters, each test uses the more cautious
-/// of two expectations: from clusters, or from independent trials.
+/// of two expectations: one from clusters, one from independent trials.
 struct Dispersions {
   Dispersion more, less;
 };
 
-/// Pearson's statistic over groups of neighbouring sizes, each with enough trials for a chi-square (at least four times
-/// the variance of one answer). It is orthogonal to the fitted parameters and to `besides`, and uses the exact
-/// covariance. In clustered data its distribution is that of Rao and Scott (1984) with the second-order correction. If
-/// trials are independent and a size has several rows, Pearson's statistic of those rows with its exact conditional
-/// mean and variance (Dawson 1954) is added. `clusters`: number of clusters of the fit, 0 for independent trials.
+/// Returns Pearson's statistic over groups of neighbouring sizes. Each group has enough trials for a chi-square (at
+/// least four times the variance of one answer). The statistic is orthogonal to the fitted parameters and to `besides`,
+/// and uses the exact covariance. In clustered data its distribution follows Rao and Scott (1984) with the second-order
+/// correction. If trials are independent and a size has several rows, Pearson's statistic of those rows is added, with
+/// its exact conditional mean and variance (Dawson 1954). `clusters`: number of clusters of the fit, 0 for independent
+/// trials.
 [[nodiscard]] Dispersions dispersions(const ModelResiduals& model, std::span<const Level> levels,
                                       std::span<const Direction> besides, double clusters);
 

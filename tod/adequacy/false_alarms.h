@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Permitted false alarms of the model tests.
+// Permitted probabilities of a false alarm of the model tests.
 #pragma once
 
 namespace todbench {
 
-/// Probabilities that a test exceeds its limit by chance.
+/// Probabilities with which a test exceeds its limit by chance.
 struct FalseAlarms {
   double departure = 0, lapse = 0;
   double scatter = 0;  ///< on each side

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Thresholds by the direction of the triangles: noise of rows or columns, interlaced fields and a tilted lens change
-// the answers to some directions only.
+// Thresholds by the direction of the triangles. Row or column noise, interlaced fields and a tilted lens affect the
+// answers to some directions only.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,15 @@
 
 namespace todbench {
 
-/// Compares the answers of one contrast by the direction of the triangles in the picture. The threshold of each
-/// direction is that of the common function of the twin, moved along ln size (one step of the quasi-likelihood
-/// estimate, twin_shape_estimate()). The axes are compared within each plate and mounting, whose scatter gives the
-/// error. Empty with fewer than three of these, or if a direction is missing in one of them.
+/// Compares the answers at one contrast by the direction of the triangles in the picture. The threshold of each
+/// direction comes from the common function of the twin, shifted along ln size (one step of the quasi-likelihood
+/// estimate, twin_shape_estimate()). The axes are compared within each combination of plate and mounting; the scatter
+/// over these combinations yields the error. Empty with fewer than three combinations, or if a direction is missing in
+/// one of them.
 [[nodiscard]] std::optional<Orientations> orientations(std::span<const Trial> trials, const ProportionTable& table);
 
-/// A finding if the axes differ by more than chance (two-sided t test at 0.3 %) and by more than 2 %; otherwise empty.
-/// The threshold itself remains usable: it is the mean over the directions.
+/// Returns a finding if the difference of the axes exceeds chance (two-sided t test at 0.3 %) and 2 %; otherwise empty.
+/// The threshold itself remains usable, because it is the mean over the directions.
 [[nodiscard]] std::optional<AdequacyFinding> orientation_finding(const Orientations& found);
 
 }  // namespace todbench

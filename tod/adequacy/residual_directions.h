@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Residuals of answers from a fitted function, and their projections on given directions of departure.
+// Residuals of answers from a fitted function, and their projections on selected directions of departure.
 #pragma once
 
 #include <optional>
@@ -14,12 +14,12 @@ namespace todbench {
 struct LevelResidual {
   double ln_size = 0;  ///< relative; meaningless for catch trials
   double trials = 0;
-  double right = 0, wrong = 0;  ///< probabilities by the function
+  double right = 0, wrong = 0;  ///< probabilities according to the function
   double logit = 0;             ///< ln(right / wrong), limited to +-50
   double residual = 0;          ///< correct answers minus their expectation
   bool catch_trials = false;
 
-  /// Variance of the number of correct answers.
+  /// Returns the variance of the number of correct answers.
   [[nodiscard]] double variance() const { return trials * right * wrong; }
 };
 
@@ -31,11 +31,12 @@ struct ModelResiduals {
   std::array<bool, 3> fitted{};       ///< parameters that were fitted
   std::vector<LevelResidual> levels;  ///< sizes increasing, catch trials last
 };
-/// Residuals at a place of maximum likelihood. `fitted`: the parameters that were searched.
+/// Returns the residuals at a place of maximum likelihood. `fitted`: the parameters that were fitted.
 [[nodiscard]] ModelResiduals model_residuals(const PooledCounts& counts, PsychometricForm form,
                                              const PsychometricPlace& place, const std::array<bool, 3>& fitted);
 
-/// ln(psi / (1 - psi)) of a function at every level of the residuals, limited to +-50. Values of catch trials are kept.
+/// Returns ln(psi / (1 - psi)) of a function at every level of the residuals, limited to +-50. Catch trials keep their
+/// values.
 [[nodiscard]] std::vector<double> logits_at(const ModelResiduals& model, PsychometricForm form,
                                             const PsychometricPlace& place);
 
@@ -46,8 +47,8 @@ struct Direction {
   double score = 0;             ///< standard normal under the model
 };
 
-/// Makes directions from weights of the residuals. Empty if the parameters, or the directions `besides`, leave less
-/// than a hundredth of the variance of the weights.
+/// Derives directions from weights of the residuals. A direction is empty if the parameters, or the directions
+/// `besides`, leave less than a hundredth of the variance of the weights.
 class Directions {
  public:
   explicit Directions(const ModelResiduals& model);
@@ -61,8 +62,9 @@ class Directions {
   std::vector<std::vector<double>> parameters_;  ///< orthonormal
 };
 
-/// Covariance of the scores of directions over clusters (Liang and Zeger 1986), times G / (G - 1), row by row. For rows
-/// without a cluster each trial is a cluster. Precondition: `clusters` > 1.
+/// Returns the covariance of the scores of directions over clusters (Liang and Zeger 1986), times G / (G - 1), where G
+/// is the number of clusters, row by row. In rows without a cluster each trial is a cluster. Precondition: `clusters` >
+/// 1.
 [[nodiscard]] std::vector<double> cluster_covariance(const ModelResiduals& model, std::span<const Level> levels,
                                                      std::span<const Direction> directions, double clusters);
 
