@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Judgement of the bars and spots of a plate by the observer: frames in, thresholds out. Uses no devices.
+// Judges the bars and spots of a plate with the observer: frames in, thresholds out. Uses no devices.
 #pragma once
 
 #include <optional>
@@ -13,13 +13,13 @@
 
 namespace todbench {
 
-/// State in which a frame shows the plate.
+/// Presentation of the plate in a frame.
 struct ShownBars {
   int set_up = 0;
-  std::size_t level = 0;  ///< number of the contrast
+  std::size_t level = 0;  ///< index of the contrast
   double said_k = 0;      ///< reported by the target, signed
   Mounting mounting = Mounting::identity;
-  Registration where;  ///< of the plate in this mounting and place
+  Registration where;  ///< registration of the plate in this mounting and place
   double noise_k = 0;  ///< temporal noise of the camera, sd of a pixel in one frame
 };
 
@@ -27,9 +27,9 @@ struct ShownBars {
 class BarsJudge {
  public:
   /// Prepares the observer. `where`: registration of the plate in identity mounting, for scale and direction. Errors:
-  /// `invalid_input` (no pair that can be judged), those of the observer's templates.
+  /// `invalid_input` (no pair that can be judged), and those of the observer's templates.
   [[nodiscard]] static Result<BarsJudge> create(const MrtdOptions& options, const Registration& where);
-  /// Judges all places of one frame. Places whose window leaves the picture are left out from then on.
+  /// Judges all places of one frame. Excludes places permanently once their window leaves the picture.
   void add(const cv::Mat1d& kelvin, const ShownBars& shown);
   [[nodiscard]] MrtdMeasure result() const;
 
@@ -51,15 +51,15 @@ class BarsJudge {
     std::vector<std::vector<float>> own_noise{};  ///< scores of white noise of sd 1
     std::vector<std::vector<float>> eye_noise{};  ///< scores of the noise of the eye of sd 1; empty without an eye
     std::vector<Answers> answers{};               ///< by observer
-    std::vector<double> phase{};                  ///< of the target across the bars, by set-up
+    std::vector<double> phase{};                  ///< sampling phase of the target across the bars, by set-up
     bool left_out = false;
   };
   struct Thresholds;
-  /// A set-up, or a part of the frames of every set-up; by default neither.
+  /// A set-up, or a part of the frames of every set-up, that is left out; by default neither.
   struct LeftOut {
     static constexpr std::size_t none = -1;
     std::size_t set_up = none, frame_part = none;
-    /// The first `draws` of a row without the part.
+    /// Returns the first `draws` elements of a row without the part.
     [[nodiscard]] std::vector<float> rest(const std::vector<float>& row, std::size_t draws) const;
   };
 
@@ -69,7 +69,7 @@ class BarsJudge {
   /// Adds the decisions of every observer about an interval to the scores of its level and set-up. `pattern`: scores of
   /// the frame's window, in kelvin.
   void decide(Place& place, bool target, const std::vector<float>& pattern, const ShownBars& shown);
-  /// Keeps both windows of a frame for people. Bars beyond the cut have no threshold and are not kept.
+  /// Keeps both windows of a frame for human observers. Bars beyond the cut have no threshold and are not kept.
   void keep(std::size_t place, const ShownBars& shown, const cv::Mat1f& target, const cv::Mat1f& other);
   [[nodiscard]] KeptBars kept() const;
   [[nodiscard]] Thresholds thresholds(const Place& place, std::size_t observer, const LeftOut& left_out) const;
@@ -80,10 +80,10 @@ class BarsJudge {
   [[nodiscard]] MrtdPoint point(const Place& place) const;
 
   MrtdOptions options_;
-  /// The observer of the plan; with an eye also those at the best and the worst end of its open parameters.
+  /// The observer of the plan; with an eye also the observers at the best and the worst end of its open parameters.
   std::vector<TemplateObserverSpec> observers_;
   std::vector<Place> places_;
-  /// Targets and alternatives of places_ in turn, as rectangles, so that mounted() moves them.
+  /// Targets and alternatives of places_, alternating, as rectangles that mounted() can move.
   TargetPlate positions_;
   std::vector<double> said_sum_k_;
   std::vector<int> said_count_;

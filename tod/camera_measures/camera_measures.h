@@ -33,47 +33,48 @@ struct CameraMeasuresOptions {
   bool noise = false;                         ///< temporal noise, NETD and 3-D noise, at a contrast of 0
   int noise_frames = 64;                      ///< of the noise cube, at least 5
   std::optional<PixelOptions> pixels{};       ///< bad and substituted pixels in the noise cube; empty: not measured
-  std::optional<double> drift_s{};            ///< duration after a correction, at a contrast of 0; empty: no drift
+  std::optional<double> drift_s{};            ///< duration after a correction, at a contrast of 0; empty: not measured
   std::optional<ResponseOptions> response{};  ///< time constant from steps of the first plate; empty: not measured
-  bool geometry = false;                      ///< IFOV and distortion from the picture that locates the plate
+  bool geometry = false;                      ///< IFOV and distortion, from the picture in which the plate is located
   bool transfer = false;                      ///< signal transfer from the steps below
   std::vector<double> transfer_steps_k;       ///< contrasts to show, at least three
   std::vector<double> triangles_k{};          ///< contrasts at which the smallest triangles are shown; empty: none
-  std::optional<TargetPlate> mtf_plate{};     ///< in identity mounting; empty: no MTF
+  std::optional<TargetPlate> mtf_plate{};     ///< plate in identity mounting; empty: no MTF
   double mtf_delta_t_k = 10;                  ///< contrast at which it is shown
   int mtf_frames = 64;                        ///< averaged, at least 1
-  double mtf_frequency_per_pitch = 0.25;      ///< at which the MTF is stated, up to 1
-  std::optional<TargetPlate> ctf_plate{};     ///< in identity mounting; empty: no CTF
+  double mtf_frequency_per_pitch = 0.25;      ///< frequency at which the MTF is stated, up to 1
+  std::optional<TargetPlate> ctf_plate{};     ///< plate in identity mounting; empty: no CTF
   double ctf_delta_t_k = 10;                  ///< contrast at which it is shown
   int ctf_frames = 64;                        ///< averaged, at least 1
-  double ctf_frequency_per_pitch = 0.4;       ///< the group nearest to it is stated
-  std::optional<TargetPlate> source_plate{};  ///< in identity mounting; empty: no size-of-source effect
+  double ctf_frequency_per_pitch = 0.4;       ///< the group with the nearest frequency is stated
+  std::optional<TargetPlate> source_plate{};  ///< plate in identity mounting; empty: no size-of-source effect
   double source_delta_t_k = 10;               ///< contrast at which it is shown
   int source_frames = 64;                     ///< averaged, at least 1; without contrast twice as many
   double source_size_px = 10;                 ///< side of the square source whose loss is stated
   std::optional<AbsoluteOptions> absolute{};  ///< absolute temperatures; empty: not measured
   int timing_frames = 0;                      ///< frames whose times are examined; 0: not measured
   std::optional<LatencyOptions> latency{};    ///< runs of the stage; empty: not measured
-  std::optional<MrtdOptions> mrtd{};          ///< response, IFOV and frames to locate are filled in; empty: no MRTD
-  /// Automatic gain, from contrast steps of the first plate; empty: not described.
+  std::optional<MrtdOptions> mrtd{};  ///< response, IFOV and frames to locate the plate are filled in later; empty: no
+                                      ///< MRTD
+  /// Options of the automatic gain, measured with contrast steps of the first plate; empty: not measured.
   std::optional<ResponseOptions> gain_control{};
-  /// Plates, frames to average, corrections, timeouts and integrity as in the TOD measurement. The first plate is shown
-  /// in identity mounting.
+  /// Options of the TOD measurement: plates, frames to average, corrections, timeouts and integrity. The first plate is
+  /// shown in identity mounting.
   MeasurementOptions measurement;
 };
 
 /// One step of the signal transfer.
 struct TransferStep {
   double set_delta_t_k = 0, said_delta_t_k = 0;  ///< set-point, and value reported by the target
-  double seen_delta_t_k = 0, seen_u_k = 0;       ///< by the camera's scale; u from the scatter over triangles
+  double seen_delta_t_k = 0, seen_u_k = 0;       ///< contrast on the camera's scale; u from the scatter over triangles
 };
 
 /// Signal transfer from contrast steps.
 struct TransferMeasure {
   int frames_each = 0;
   std::vector<TransferStep> steps;
-  SignalTransfer line;  ///< seen over said: slope 1 if the camera's temperature scale is correct
-  /// Half-width of the slope's 95 % interval, by Student's t of the steps.
+  SignalTransfer line;  ///< observed over reported contrast: slope 1 if the camera's temperature scale is correct
+  /// Returns the half-width of the slope's 95 % interval, by Student's t with the degrees of freedom of the steps.
   [[nodiscard]] double slope_half_width() const;
 };
 
@@ -90,12 +91,13 @@ struct GeometryMeasure {
   std::optional<double> distance_relative_u{};                          ///< standard uncertainty; empty: not stated
   std::optional<double> model_ifov_mrad{}, model_distortion_percent{};  ///< of a simulated sensor
 
-  /// IFOV along x or y; the interval contains the errors of the picture only.
+  /// Returns the IFOV along x or y; the interval includes only the errors of the picture.
   [[nodiscard]] Estimate ifov_mrad(EdgeAxis axis) const;
-  /// Field of view between the outer borders of the first and the last pixel, through the middle of the picture: the
-  /// IFOV and the fitted distortion, continued beyond the plate. The interval contains the errors of the picture only.
+  /// Returns the field of view between the outer borders of the first and the last pixel, through the middle of the
+  /// picture. It uses the IFOV and the fitted distortion, extrapolated beyond the plate. The interval includes only the
+  /// errors of the picture.
   [[nodiscard]] Estimate field_of_view_deg(EdgeAxis axis) const;
-  /// IFOV along x over that along y. The distance cancels.
+  /// Returns the IFOV along x divided by the IFOV along y. The distance cancels.
   [[nodiscard]] Estimate aspect_ratio() const;
 };
 
@@ -105,7 +107,7 @@ struct MtfMeasure {
   int frames = 0;
   double set_delta_t_k = 0, said_delta_t_k = 0;
   double pitch_mrad = 0;           ///< IFOV of a pixel, from the measurement
-  double frequency_per_pitch = 0;  ///< at which the MTF is stated
+  double frequency_per_pitch = 0;  ///< frequency at which the MTF is stated
   std::vector<EdgeMtf> edges;      ///< the most central rectangle first
 };
 
@@ -115,10 +117,10 @@ struct CtfMeasure {
   int frames = 0;
   double set_delta_t_k = 0, said_delta_t_k = 0;
   double pitch_mrad = 0;           ///< IFOV of a pixel, from the measurement
-  double frequency_per_pitch = 0;  ///< requested
+  double frequency_per_pitch = 0;  ///< requested frequency
   PlateBarsCtf bars;
 
-  /// Group on this axis whose frequency is nearest to the requested one; null if there is none on this axis.
+  /// Returns the group on this axis with the frequency nearest to the requested one; null if this axis has no group.
   [[nodiscard]] const BarsCtf* stated(EdgeAxis axis) const;
 };
 
@@ -132,8 +134,8 @@ struct SourceSizeMeasure {
   SourceSize effect;
   std::optional<double> model_loss{};  ///< at `stated_px`, of a simulated sensor
 
-  /// Signal of the reference aperture over the contrast that the target reports: slope of the signal transfer on an
-  /// extended source. The interval contains the noise only.
+  /// Returns the signal of the reference aperture divided by the contrast that the target reports: the slope of the
+  /// signal transfer for an extended source. The interval includes only the noise.
   [[nodiscard]] Estimate slope() const;
 };
 
@@ -143,24 +145,24 @@ struct PlateView {
   double set_delta_t_k = 0;
   Registration where;
   cv::Size picture{0, 0};
-  cv::Rect field;               ///< in the picture: the plate without its rim
-  cv::Mat1d kelvin;             ///< of the field
+  cv::Rect field;               ///< area of the plate without its rim, in the picture
+  cv::Mat1d kelvin;             ///< temperatures of the field
   double temporal_noise_k = 0;  ///< of a pixel in one frame; 0: not known
 };
 
 /// The view of the camera, and the sensor model's picture of the plate at the same place.
 struct PlatePicture {
   PlateView seen;
-  cv::Mat1d expected_k;           ///< of the field, without noise; contrast, level and place are fitted
+  cv::Mat1d expected_k;           ///< model picture of the field, without noise; contrast, level and place are fitted
   std::vector<Polygon> outlines;  ///< of the triangles as located, in pixels of the picture
   double contrast_k = 0;          ///< fitted
   double moved_px = 0;            ///< distance between fitted and located place
   double residual_k = 0;          ///< root mean square over the field
-  /// Residual over the temporal noise that remains in the mean: near 1 if only white noise remains.
+  /// Returns the residual divided by the temporal noise of the mean picture: near 1 if only white noise remains.
   [[nodiscard]] std::optional<double> residual_over_noise() const;
 };
 
-/// Results. A requested measure that is absent has its reason in `reasons`.
+/// Results. If a requested measure is absent, `reasons` contains the reason.
 struct CameraMeasures {
   std::optional<NoiseMeasure> noise{};
   std::optional<PixelMeasure> pixels{};
@@ -181,21 +183,22 @@ struct CameraMeasures {
   std::optional<double> response_model_ms{};  ///< time constant of a simulated sensor
   std::optional<PlateView> view{};            ///< if the plate was located
   std::optional<PlatePicture> picture{};      ///< if a sensor model was compared with the view
-  std::vector<std::string> reasons{};         ///< sentences
+  std::vector<std::string> reasons{};         ///< sentences about absent measures
 
-  /// Temporal noise of a pixel in kelvin of the camera's scale, with its 95 % interval.
+  /// Returns the variance of the temporal noise of a pixel in K^2 on the camera's scale, with its 95 % interval.
   [[nodiscard]] std::optional<ComponentEstimate> temporal_variance_k2() const;
-  /// Temporal noise over the slope of the signal transfer. Empty if one of them is absent, or if the noise is below
-  /// half a count and cannot be measured.
+  /// Returns the temporal noise divided by the slope of the signal transfer. Empty if one of them is absent, or if the
+  /// noise is below half a count and cannot be measured.
   [[nodiscard]] std::optional<double> netd_k() const;
-  /// Same with the slope on an extended source, SourceSizeMeasure::slope(), with its 95 % interval.
+  /// Same with the slope for an extended source, SourceSizeMeasure::slope(), with its 95 % interval.
   [[nodiscard]] std::optional<Estimate> netd_extended_k() const;
-  /// Relative half-width of the 95 % interval of netd_k(): root of the sum of squares of those of noise and slope.
+  /// Returns the relative half-width of the 95 % interval of netd_k(): the root of the sum of squares of the relative
+  /// half-widths of noise and slope.
   [[nodiscard]] std::optional<double> netd_relative_half_width() const;
 };
 
 /// Starts the source, measures and stops it. A measure that fails adds a reason and is not an error. Errors:
-/// `interrupted` (stop requested). `host` is used during the call only.
+/// `interrupted` (stop requested). `host` is used only during the call.
 [[nodiscard]] Result<CameraMeasures> measure_camera(FrameSource& source, Target& target,
                                                     const CameraMeasuresOptions& options, RunController& host,
                                                     std::stop_token stop);

@@ -14,8 +14,8 @@ namespace todbench {
 
 /// Drift of a camera after a correction, in kelvin of its own scale.
 struct DriftMeasure {
-  int groups = 0, frames_each = 0;  ///< frames_each: of the smallest group
-  double first_s = 0, last_s = 0;   ///< of the groups, since the correction
+  int groups = 0, frames_each = 0;  ///< frames_each: number in the smallest group
+  double first_s = 0, last_s = 0;   ///< times of the first and the last group since the correction
   bool ended_by_correction = false;
   DriftLaw law;
 };
@@ -24,16 +24,16 @@ struct DriftMeasure {
 struct DriftOptions {
   double drift_s = 20;       ///< duration of the observation, > 0
   double frame_rate_hz = 0;  ///< stated by the camera; 0: not stated
-  bool commanded = false;    ///< a correction was commanded just now; false: wait for the camera's own
-  /// For a sensor model: frames are made on request, time is that of its clock, and no correction is needed.
+  bool commanded = false;    ///< true: a correction was just commanded; false: wait for the camera's own correction
+  /// True for a sensor model: it computes frames on request, its clock provides the time, and it needs no correction.
   bool simulated = false;
 };
 
-/// Takes the frames of `drift_s` in 20 groups of equal duration, up to the next correction. If that comes early, the
-/// groups are shorter. If no correction was commanded, waits at most `drift_s` for one that the camera reports or that
-/// its pictures show. Times are those of the camera's clock if it counts frames at the stated rate, otherwise of the
-/// host's clock. Errors: `integrity` (no correction, or the next one before eight groups), those of FrameTaker::next()
-/// and drift_law().
+/// Takes the frames of `drift_s` in 20 groups of equal duration, up to the next correction. If this correction comes
+/// early, the groups are shorter. If no correction was commanded, waits at most `drift_s` for one that the camera
+/// reports or that its pictures show. Times come from the camera's clock if it counts frames at the stated rate,
+/// otherwise from the host's clock. Errors: `integrity` (no correction, or the next one before eight groups), those of
+/// FrameTaker::next() and drift_law().
 [[nodiscard]] Result<DriftMeasure> measure_drift(FrameTaker& taker, const cv::Rect& field, const DriftOptions& options,
                                                  const std::stop_token& stop);
 

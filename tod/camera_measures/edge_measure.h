@@ -21,17 +21,17 @@ struct EdgeMtf {
   int sides = 0;                                   ///< number of measured sides
   cv::Point2d middle_px{0, 0};                     ///< centre of the rectangle
   double angle_deg = 0;                            ///< from the axis to the edge's normal, mean of the sides
-  double noise_over_step = 0;                      ///< largest of the sides
+  double noise_over_step = 0;                      ///< largest value of the sides
   std::vector<double> frequency_per_pitch;         ///< 0 ... 1, along the normal
   std::vector<double> mtf, low, high;              ///< mean of the sides; 95 %, not symmetric; low 0: not known
-  double widest_halo_pitch = 0;                    ///< largest sigma of a halo that belongs to the MTF
-  double halo_allowance = 0;                       ///< largest share of the step in halos that the interval allows for
-  double wide_halo_least = 0, wide_halo_most = 0;  ///< largest of the sides (SlantedEdge)
+  double widest_halo_pitch = 0;                    ///< largest sigma of a halo that is part of the MTF
+  double halo_allowance = 0;                       ///< largest share of the step in halos that the interval includes
+  double wide_halo_least = 0, wide_halo_most = 0;  ///< largest values of the sides (SlantedEdge)
   std::optional<double> mtf50_per_pitch{};         ///< lowest frequency at which the MTF is 0.5
-  /// Closed form of a simulated sensor at the same frequencies and angle; empty for a real camera.
+  /// MTF of a simulated sensor in closed form, at the same frequencies and angle; empty for a real camera.
   std::vector<double> model{};
 
-  /// Value at a frequency from 0 to 1, linear between the tabulated ones, 0.01 apart.
+  /// Returns the MTF at a frequency from 0 to 1, linear between the tabulated frequencies, which are 0.01 apart.
   [[nodiscard]] double at(double frequency_per_pitch) const;
   [[nodiscard]] double low_at(double frequency_per_pitch) const;
   [[nodiscard]] double high_at(double frequency_per_pitch) const;
@@ -40,14 +40,14 @@ struct EdgeMtf {
 /// MTF of the edges of a plate.
 struct PlateEdges {
   std::vector<EdgeMtf> edges;          ///< the rectangle nearest to the picture's centre first; x before y
-  cv::Point2d moved_px{0, 0};          ///< shift of the plate relative to the mapping
+  cv::Point2d moved_px{0, 0};          ///< shift of the plate relative to `where`
   std::vector<std::string> reasons{};  ///< sentences about sides that could not be measured
 };
 
-/// Locates the plate in the picture by its rectangles (normalised correlation, any sign of contrast), cuts a region
-/// round the middle of each nearly upright or level side, and takes the MTF of each (slanted_edge()). Opposite sides
+/// Locates the plate in the picture by its rectangles (normalised correlation, any sign of contrast). Cuts out a region
+/// round the middle of each nearly vertical or horizontal side, and computes its MTF (slanted_edge()). Opposite sides
 /// are averaged. The tails of the MTF come from the whole plate round each rectangle (plate_tails()); their part of the
-/// interval is common to the sides. Each side of an interval covers at least half of the difference between the
+/// interval is common to the sides. The interval covers, on each side, at least half of the difference between the
 /// measured sides.
 ///
 /// `where`: mapping of the plate's millimetres to pixels except for a shift, for example the registration of another

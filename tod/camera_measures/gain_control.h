@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Automatic gain of a camera: levels and gain against the contrast of the scene, and how fast they follow it.
+// Automatic gain of a camera: levels and gain as functions of the contrast of the scene, and their settling time.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,15 @@
 
 namespace todbench {
 
-/// Picture of the first plate at one contrast, once the gain has settled, in counts or in kelvin of the camera's scale.
+/// Picture of the first plate at one contrast, after the gain has settled, in counts or in kelvin of the camera's
+/// scale.
 struct GainLevel {
-  double set_delta_t_k = 0, said_delta_t_k = 0;  ///< set-point, and value that the target reports
+  double set_delta_t_k = 0, said_delta_t_k = 0;  ///< set-point, and value reported by the target
   double surround = 0;                           ///< median of the plate
-  double lowest = 0, highest = 0;                ///< of the mean picture of the plate
-  double contrast = 0, contrast_u = 0;           ///< of the large triangles; u from the scatter over triangles
+  double lowest = 0, highest = 0;                ///< in the mean picture of the plate
+  double contrast = 0, contrast_u = 0;           ///< contrast of the large triangles; u from the scatter over triangles
 
-  /// Contrast of the picture over that of the target, with the 95 % interval of the triangles.
+  /// Returns the contrast of the picture divided by that of the target, with the 95 % interval from the triangles.
   [[nodiscard]] Estimate gain() const;
 };
 
@@ -27,9 +28,9 @@ struct GainControlMeasure {
   std::string unit;  ///< "count" or "K"
   int frames = 0;    ///< averaged at each contrast
   std::vector<GainLevel> levels{};
-  std::optional<ResponseMeasure> settling{};  ///< of the level of the surround; empty: the reason is stated
+  std::optional<ResponseMeasure> settling{};  ///< settling of the surround's level; empty: the reason is stated
 
-  /// Levels of the contrasts with the smallest and the largest magnitude. Precondition: there are levels.
+  /// Return the levels at the contrasts with the smallest and the largest magnitude. Precondition: there are levels.
   [[nodiscard]] const GainLevel& smallest() const;
   [[nodiscard]] const GainLevel& largest() const;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Windows of bars and spots that the observer judged, kept for human observers.
+// Windows with bars and spots that the observer judged, kept for human observers.
 #pragma once
 
 #include <cstddef>
@@ -22,9 +22,9 @@ struct KeptPlace {
   int side_px = 0;                 ///< of the windows
 };
 
-/// Both windows of a place in one frame, in kelvin about the mean of each window, as the observer judges them.
+/// Both windows of a place in one frame, in kelvin relative to the mean of each window, as the observer judges them.
 struct KeptPicture {
-  std::size_t place = 0;  ///< in KeptBars::places
+  std::size_t place = 0;  ///< index in KeptBars::places
   int set_up = 0;
   double contrast_k = 0;  ///< reported by the target, signed
   cv::Mat1f target;       ///< four bars, or the spot
@@ -40,11 +40,11 @@ struct KeptBars {
 /// Keeps the first frames of each place, contrast and set-up.
 class BarsKeeper {
  public:
-  /// `frames`: at each contrast of each set-up; 0: none.
+  /// `frames`: number kept for each contrast of each set-up; 0: none.
   explicit BarsKeeper(int frames) : frames_(frames) {}
   [[nodiscard]] bool keeps() const { return frames_ > 0; }
   void add(KeptPicture picture);
-  /// Pictures of the places that are not empty; `places` has one element for each place of add().
+  /// Returns the pictures of all places with a name. `places` has one element for each place of add().
   [[nodiscard]] KeptBars of(const std::vector<KeptPlace>& places) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MRTD of a camera with its own target: four bars or five, judged by the template observer at contrasts of both
+// MRTD of a camera with its own target: the template observer discriminates four bars from five, at contrasts of both
 // polarities.
 #pragma once
 
@@ -24,20 +24,20 @@ namespace todbench {
 
 /// Options of measure_mrtd().
 struct MrtdOptions {
-  TargetPlate plate{};  ///< in identity mounting, with bar_pairs()
+  TargetPlate plate{};  ///< plate in identity mounting, with bar_pairs()
   /// Magnitudes of the contrasts, shown at both polarities.
   std::vector<double> contrasts_k{0.0025, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};
-  int frames = 16;  ///< judged at each contrast of each set-up, one by one
-  int set_ups = 8;  ///< places of the plate between the pixels, shared by the mountings; at least 5
+  int frames = 16;  ///< number judged at each contrast of each set-up, one by one
+  int set_ups = 8;  ///< positions of the plate relative to the pixels, shared among the mountings; at least 5
   std::vector<Mounting> mountings{Mounting::identity};
-  double frequency_per_pitch = 0.25;  ///< the bars nearest to it are stated
-  double spot_px = 3;                 ///< the spot nearest to it is stated
+  double frequency_per_pitch = 0.25;  ///< the bars with the nearest frequency are stated
+  double spot_px = 3;                 ///< the spot with the nearest size is stated
   double pitch_mrad = 0;              ///< IFOV of a pixel
   double locating_k = 4;              ///< contrast at which the plate is located
-  int registration_frames = 32;       ///< averaged to locate it
-  int kept_frames = 0;                ///< frames of each contrast of each set-up that are kept for human observers
+  int registration_frames = 32;       ///< number averaged to locate the plate
+  int kept_frames = 0;                ///< number at each contrast of each set-up that is kept for human observers
   double response = 1;                ///< observed contrast over the contrast that the target reports
-  TemplateObserverSpec observer{};    ///< one with an eye has its display
+  TemplateObserverSpec observer{};    ///< an observer with an eye includes its display
   std::uint64_t seed = 1;             ///< of the observer's own noise
 };
 
@@ -45,19 +45,20 @@ struct MrtdOptions {
 struct MrtdPoint {
   std::string place;  ///< name of the group with four bars, or of the spot
   EdgeAxis axis = EdgeAxis::x;
-  double frequency_per_pitch = 0;  ///< of the four bars, in the picture; 0: a spot
+  double frequency_per_pitch = 0;  ///< frequency of the four bars in the picture; 0: a spot
   double size_px = 0;              ///< side of the spot; 0: bars
-  /// Contrast for 75 % correct at each polarity; the negative one is below 0.
+  /// Contrast for 75 % correct answers at each polarity; the negative one is below 0.
   std::optional<double> positive_k{}, negative_k{};
-  std::optional<double> threshold_k{};  ///< half of their difference
-  Interval ci95{};                      ///< of threshold_k, by jackknife over the set-ups
-  /// threshold_k between the ends of the open parameters of an observer with an eye (open_parameters.h), from the same
-  /// frames; empty without an eye, or if an end has no threshold. No confidence interval.
+  std::optional<double> threshold_k{};  ///< half of the difference of the two
+  Interval ci95{};                      ///< interval of threshold_k, by jackknife over the set-ups
+  /// Values of threshold_k at the ends of the open parameters of an observer with an eye (open_parameters.h), from the
+  /// same frames. Empty without an eye, or if an end has no threshold. This is not a confidence interval.
   std::optional<std::pair<double, double>> spread_k{};
-  std::string reason{};                  ///< of a missing threshold; empty if there is one
+  std::string reason{};                  ///< reason for a missing threshold; empty if there is one
   std::optional<double> best_phase_k{};  ///< threshold at the best sampling phase; empty: not found
   Interval best_phase_ci95{};
-  /// Distance of the middle of the bars from a border of pixels, 0 to 0.5 pixels, where the plate was located.
+  /// Distance between the middle of the bars and the nearest pixel border, 0 to 0.5 pixels, at the location of the
+  /// plate.
   double best_phase = 0;
   /// Shares of correct decisions by contrast, over all set-ups.
   std::vector<double> positive_share{}, negative_share{};
@@ -69,58 +70,59 @@ struct MrtdMeasure {
   int frames = 0, set_ups = 0, mountings = 0;
   double pitch_mrad = 0;
   double frequency_per_pitch = 0, spot_px = 0;  ///< requested
-  std::vector<double> contrast_k{};             ///< contrasts that the target reported: mean magnitudes, rising
-  std::vector<MrtdPoint> bars{};                ///< x before y, low frequencies first
-  std::vector<MrtdPoint> spots{};               ///< small ones first
-  std::vector<std::string> reasons{};           ///< sentences about places that could not be judged
-  KeptBars kept{};                              ///< windows for people; empty unless kept_frames is above 0
+  std::vector<double> contrast_k{};  ///< mean magnitudes of the contrasts that the target reported, in increasing order
+  std::vector<MrtdPoint> bars{};     ///< x before y, low frequencies first
+  std::vector<MrtdPoint> spots{};    ///< small ones first
+  std::vector<std::string> reasons{};  ///< sentences about places that could not be judged
+  KeptBars kept{};                     ///< windows for human observers; empty unless kept_frames is above 0
 
-  /// Bars on this axis whose frequency is nearest to the requested one; null if there are none.
+  /// Returns the bars on this axis with the frequency nearest to the requested one; null if there are none.
   [[nodiscard]] const MrtdPoint* stated(EdgeAxis axis) const;
-  /// Spot whose side is nearest to the requested one; null if there is none.
+  /// Returns the spot with the side nearest to the requested one; null if there is none.
   [[nodiscard]] const MrtdPoint* stated_spot() const;
 };
 
 /// Highest frequency of an MRTD, with a margin for the error of the scale. Beyond Nyquist a model observer still
-/// distinguishes alias patterns of bars, but a person does not see four bars.
+/// discriminates alias patterns of bars, but a person does not see four bars.
 inline constexpr double mrtd_cut_per_pitch = 0.505;
 
-/// The two alternatives of Bijl and Valeton: four bars, and five bars that fill a square of the same size.
+/// A pair of the two alternatives of Bijl and Valeton: four bars, and five bars that fill a square of the same size.
 struct BarPair {
   PlateBars four;
   std::string five;                       ///< name of the group of five
   std::vector<PlateRectangle> five_bars;  ///< rectangles "NAME, bar 1" to "NAME, bar 5"
   cv::Point2d five_mm;                    ///< middle of their square
 };
-/// Each group of four bars of a plate with the nearest group of five bars on the same axis.
+/// Returns each group of four bars of a plate with the nearest group of five bars on the same axis.
 [[nodiscard]] std::vector<BarPair> bar_pairs(const TargetPlate& plate);
-/// Rectangles that are not part of a group of five bars.
+/// Returns the rectangles that are not part of a group of five bars.
 [[nodiscard]] std::vector<PlateRectangle> spots_of(const TargetPlate& plate);
 
-/// Calls `work`, shows a state of the target and waits until frames of it can be taken. Frames that arrive during the
-/// work are taken from the camera.
+/// Calls `work`, shows a state of the target and waits until frames of this state can be taken. Frames that arrive
+/// during `work` are read from the camera.
 using ShowState = std::function<Result<PresentedTarget>(const TargetState&, const std::function<void()>& work)>;
 
-/// States that the measure shows, in order: in each mounting first the contrast by which the plate is located, then
-/// every contrast from large to small and of both polarities, at the set-ups of this mounting.
+/// A state that the measurement shows. In each mounting the first one is the contrast at which the plate is located.
+/// Every contrast follows, from large to small and with both polarities, at the set-ups of this mounting.
 struct MrtdPresentation {
   TargetState state;
-  int set_up = 0;         ///< below 0: locates the plate
-  std::size_t level = 0;  ///< in MrtdOptions::contrasts_k
+  int set_up = 0;         ///< negative: the plate is located
+  std::size_t level = 0;  ///< index in MrtdOptions::contrasts_k
 };
 /// Lists the presentations. `pixel_mm`: size of a pixel on the plate.
 [[nodiscard]] std::vector<MrtdPresentation> mrtd_presentations(const MrtdOptions& options, double pixel_mm);
 
-/// Measures the MRTD. A decision has two intervals, one with four and one with five bars of the same square and
-/// contrast; the observer states which had four (Bijl and Valeton 1999: free of response bias). Every frame shows both
-/// groups. All pairs of frames are decided, as in virtual_mrtd(). A function of contrast (fit_contrast()) gives the
-/// threshold of each polarity; half of their difference does not contain the offset of the target. The interval is that
-/// of the jackknife over the set-ups, with Student's t. Spots are decided against an empty part of the plate.
+/// Measures the MRTD. A decision compares two intervals, one with four and one with five bars of the same square and
+/// contrast. The observer states which interval had four bars (Bijl and Valeton 1999: free of response bias). Every
+/// frame shows both groups. All pairs of frames are decided, as in virtual_mrtd(). A function of contrast
+/// (fit_contrast()) yields the threshold of each polarity; half of their difference does not contain the offset of the
+/// target. The interval comes from the jackknife over the set-ups, with Student's t. Spots are compared with an empty
+/// part of the plate.
 ///
-/// `where`: of a plate in the same holder, in identity mounting; the plate itself is located to a whole pixel, and the
-/// observer searches for the rest. The noise of the camera, which an observer of limited efficiency enlarges, is that
-/// of the frames that locate the plate. Errors: those of target and camera, `calibration` (plate not in the picture),
-/// `invalid_input` (no pair of groups that can be judged).
+/// `where`: registration of a plate in the same holder, in identity mounting. The plate itself is located to a whole
+/// pixel, and the observer searches for the remaining shift. The noise of the camera, which an observer of limited
+/// efficiency enlarges, comes from the frames in which the plate is located. Errors: those of target and camera,
+/// `calibration` (plate not in the picture), `invalid_input` (no pair of groups that can be judged).
 [[nodiscard]] Result<MrtdMeasure> measure_mrtd(FrameTaker& taker, const ShowState& show, const Registration& where,
                                                const MrtdOptions& options, std::stop_token stop);
 

@@ -17,16 +17,16 @@ namespace todbench {
 
 /// Noise of a cube of frames of the plate at a contrast of 0, in kelvin of the camera's scale.
 struct NoiseMeasure {
-  int frames = 0, rows = 0, columns = 0;  ///< of the part of the picture that the plate covers
+  int frames = 0, rows = 0, columns = 0;  ///< rows and columns of the part of the picture that the plate covers
   std::uint64_t first_frame = 0, last_frame = 0;
   std::optional<double> since_correction_s{};  ///< at the last frame; empty: no correction is known
   double mean_k = 0;                           ///< mean temperature reported by the camera
   NoiseTable table;                            ///< without shading
   double shading_range_k = 0, shading_sd_k = 0;
   std::optional<double> lag1_correlation{};
-  std::optional<double> noise_counts{};  ///< temporal, in steps of the camera's counts; empty: not known
+  std::optional<double> noise_counts{};  ///< temporal noise in steps of the camera's counts; empty: not known
   cv::Rect field{};                      ///< in the frame
-  cv::Mat1d pixel_sd_k{};                ///< temporal noise of each pixel without changes of whole frames
+  cv::Mat1d pixel_sd_k{};                ///< temporal noise of each pixel, without changes of whole frames
   cv::Mat1d pattern_k{};                 ///< mean frame minus its mean and shading
 };
 
@@ -34,22 +34,22 @@ struct NoiseMeasure {
 struct NoiseOptions {
   int frames = 64;                         ///< at least 5
   cv::Rect field;                          ///< part of the frame that the plate covers
-  std::optional<cv::Rect> pixel_window{};  ///< kept of each frame to examine its pixels; empty: not kept
+  std::optional<cv::Rect> pixel_window{};  ///< window of each frame that is kept to examine its pixels; empty: none
 };
 
 /// Result of measure_series_noise().
 struct NoiseSeries {
   NoiseMeasure noise;
-  std::vector<cv::Mat1f> pixel_frames{};  ///< the pixel window of at most `most_pixel_frames` frames, in kelvin
+  std::vector<cv::Mat1f> pixel_frames{};  ///< the pixel window in at most `most_pixel_frames` frames, in kelvin
 };
 
-/// Takes frames of a scene that does not change, with no non-uniformity correction between them, and sums up their
-/// noise. Errors: `integrity` (three series were interrupted by corrections, the picture changed abruptly), those of
+/// Takes frames of a constant scene, without a non-uniformity correction between them, and evaluates their noise.
+/// Errors: `integrity` (corrections interrupted three series, or the picture changed abruptly), those of
 /// FrameTaker::next(), window_kelvin() and NoiseCube.
 [[nodiscard]] Result<NoiseSeries> measure_series_noise(FrameTaker& taker, const RadiometricScale& scale,
                                                        const NoiseOptions& options, const std::stop_token& stop);
 
-/// Kelvin per count at a temperature; empty if the scale does not state it.
+/// Returns the kelvin per count at a temperature; empty if the scale does not state it.
 [[nodiscard]] std::optional<double> kelvin_per_count_at(const RadiometricScale& scale, double at_k);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bad and substituted pixels of a camera, counted by zones of its frame.
+// Bad and substituted pixels of a camera, counted by zones of the frame.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -14,11 +14,11 @@
 
 namespace todbench {
 
-/// A zone in fractions of the frame, from its upper left corner. It contains the pixels whose centres are inside.
+/// A zone in fractions of the frame, from the upper left corner. It contains the pixels whose centres are inside.
 struct ZoneArea {
   std::string name;
   double left = 0, top = 0, right = 1, bottom = 1;
-  /// The zone in pixels of a frame of this size.
+  /// Returns the zone in pixels of a frame of this size.
   [[nodiscard]] cv::Rect pixels(cv::Size frame) const;
 };
 
@@ -29,7 +29,7 @@ struct PixelOptions {
   std::vector<ZoneArea> zones{};  ///< in addition to the whole frame
 };
 
-/// Largest number of frames in which pixels are examined: 80 MB of 320 x 240.
+/// Largest number of frames in which pixels are examined: 80 MB for 320 x 240.
 inline constexpr int most_pixel_frames = 256;
 
 /// Result of measure_pixels().
@@ -44,8 +44,8 @@ struct PixelMeasure {
   std::vector<Zone> zones;  ///< the whole frame first
 };
 
-/// Finds and counts bad and substituted pixels, after removal of shading. `frames`: windows `field` of one cube of a
-/// flat field. Errors: those of pixel_defects().
+/// Finds and counts bad and substituted pixels after the removal of shading. `frames`: window `field` of the frames of
+/// one noise cube of a flat field. Errors: those of pixel_defects().
 [[nodiscard]] Result<PixelMeasure> measure_pixels(std::span<const cv::Mat1f> frames, cv::Size frame,
                                                   const cv::Rect& field, PixelScene scene, const PixelOptions& options);
 
@@ -54,9 +54,10 @@ struct ContrastPicture {
   double delta_t_k = 0;
   cv::Mat1d kelvin;  ///< of the whole frame
 };
-/// Response to temperature of each pixel that lies inside a triangle, at least two pixels from its outline: slope of
-/// its change relative to the plate's median over the contrasts. NaN for any other pixel. `field`: part of the frame
-/// that is returned; `plate`: part that the plate covers. Precondition: at least two different contrasts.
+/// Returns the response to temperature of each pixel that lies inside a triangle, at least two pixels from its outline.
+/// The response is the slope, over the contrasts, of the pixel's change relative to the plate's median. NaN for any
+/// other pixel. `field`: part of the frame that is returned; `plate`: part that the plate covers. Precondition: at
+/// least two different contrasts.
 [[nodiscard]] cv::Mat1d responsivity_in_triangles(std::span<const ContrastPicture> pictures,
                                                   const TargetPlate& mounted_plate, const Registration& where,
                                                   const cv::Rect& field, const cv::Rect& plate);

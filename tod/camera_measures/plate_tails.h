@@ -12,8 +12,8 @@
 namespace todbench {
 
 /// Fits the tails (edge_tails.h) to the pixels of the plate that are nearest to cut-out `which`: its inside and the
-/// plate round it, outside the core of every edge. Shading: a plane inside, a polynomial of second order outside. The
-/// place of the cut-out is first refined by a fraction of a pixel.
+/// plate round it, outside the core of every edge. Shading is a plane inside and a polynomial of second order outside.
+/// The position of the cut-out is first refined by a fraction of a pixel.
 ///
 /// `cut_outs`: outlines of four corners in pixels; `plate`: the part of the picture that the plate covers. Empty if too
 /// few pixels remain.
@@ -21,7 +21,7 @@ namespace todbench {
                                                     std::size_t which, const cv::Rect2d& plate,
                                                     const TailBounds& bounds);
 
-/// The same tails for a part of the picture that begins at `origin`.
+/// Returns the same tails for a part of the picture that begins at `origin`.
 [[nodiscard]] PlateTails moved_to(const PlateTails& tails, cv::Point origin);
 
 }  // namespace todbench

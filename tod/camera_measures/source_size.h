@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Size-of-source effect: signal that a small source loses, and an opaque spot gains, because the camera spreads light
-// far.
+// Size-of-source effect: because the camera spreads light over large distances, a small source loses signal and an
+// opaque spot gains signal.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -14,48 +14,50 @@
 
 namespace todbench {
 
-/// Signal in the middle of one aperture or opaque spot over the signal in the middle of the reference aperture.
+/// Signal in the middle of one aperture or opaque spot, divided by the signal in the middle of the reference aperture.
 struct SourceSizePoint {
   std::string place;   ///< name of the aperture, or of the ring round the spot
   bool spot = false;   ///< an opaque spot (inverse method); otherwise an aperture (direct method)
   double size_px = 0;  ///< side of the square
-  Estimate ratio;      ///< 1 for an aperture and 0 for a spot, if no light is spread
-  double fitted = 0;   ///< ratio by the fitted tails
-  double model = -1;   ///< of a simulated sensor; below 0: not known
+  Estimate ratio;      ///< without spread of light: 1 for an aperture and 0 for a spot
+  double fitted = 0;   ///< ratio according to the fitted tails
+  double model = -1;   ///< ratio for a simulated sensor; negative: not known
 };
 
 /// The size-of-source effect of a camera.
 struct SourceSize {
   double reference_px = 0;                ///< side of the reference aperture
   double reference_k = 0;                 ///< its signal on the camera's scale
-  double reference_u_k = 0;               ///< standard uncertainty by noise
+  double reference_u_k = 0;               ///< standard uncertainty due to noise
   std::vector<SourceSizePoint> points{};  ///< apertures, then spots, each from small to large
-  std::vector<double> size_px{};          ///< of the curve, rising from 4 to `reference_px`
-  /// Signal of a square source of that side over that of the reference, with the 95 % interval of the fitted tails,
-  /// which is not symmetric.
+  std::vector<double> size_px{};          ///< sides of the curve, increasing from 4 to `reference_px`
+  /// Signal of a square source of that side, divided by that of the reference. It has the 95 % interval of the fitted
+  /// tails, which is not symmetric.
   std::vector<Estimate> ratio{};
-  double chi2 = 0;             ///< of the points about the fitted tails
+  double chi2 = 0;             ///< chi-square of the points relative to the fitted tails
   int degrees_of_freedom = 0;  ///< number of points
-  bool consistent = true;      ///< p of chi2 above 0.001; otherwise `ratio` contains the largest distance of a point
+  bool consistent = true;      ///< p of chi2 is above 0.001; otherwise the interval of `ratio` includes the largest
+                               ///< distance of a point
 
-  /// Share of the signal that a square source of side `size_px` loses against the reference. Precondition: a curve.
+  /// Returns the share of the signal that a square source of side `side_px` loses relative to the reference.
+  /// Precondition: a curve.
   [[nodiscard]] Estimate loss(double side_px) const;
 };
 
-/// Pictures of the plate in kelvin of the camera's scale: without contrast, with contrast, without contrast again, each
-/// the mean of as many frames. The mean of the outer two removes fixed pattern and a uniform drift; their difference
-/// gives the noise.
+/// Pictures of the plate in kelvin of the camera's scale: without contrast, with contrast, and again without contrast.
+/// Each is the mean of the same number of frames. The mean of `before` and `after` removes fixed pattern and a uniform
+/// drift; their difference determines the noise.
 struct SourcePictures {
   cv::Mat1d before, lit, after;
-  /// Rise of the plate's own temperature from the outer two to the lit picture, over the contrast, both as reported by
-  /// the target. A radiator heats the plate in front of it, and the signal of the whole picture rises with the plate.
-  /// 0: not reported.
+  /// Rise of the plate's own temperature from the mean of `before` and `after` to `lit`, divided by the contrast, both
+  /// as reported by the target. A radiator heats the plate in front of it, and the signal of the whole picture rises
+  /// with the plate. 0: not reported.
   double plate_rise = 0;
 };
 
-/// Locates the plate by its rectangles, takes the signal in the middle of every aperture and spot (direct and inverse
-/// method), and fits the tails (plate_tails()) round the reference, the largest rectangle. The parts of a ring have
-/// names "ring NAME: PART"; the middle of the ring is the spot.
+/// Locates the plate by its rectangles and measures the signal in the middle of every aperture and spot (direct and
+/// inverse method). Fits the tails (plate_tails()) round the reference, which is the largest rectangle. The parts of a
+/// ring have names "ring NAME: PART"; the middle of the ring is the spot.
 ///
 /// Errors: `calibration` (rectangles not in the picture, a reference without signal), `invalid_input` (plate without
 /// two apertures).

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Times of frames: rate, jitter, gaps, and latency against a stage on the clock of the camera.
+// Times of frames: rate, jitter, gaps, and latency relative to a stage that uses the clock of the camera.
 #pragma once
 
 #include <cstdint>
@@ -27,17 +27,17 @@ struct FrameTimes {
 struct TimingMeasure {
   int frames = 0;
   std::optional<double> stated_rate_hz{};
-  bool device_clock = false;  ///< false: times of arrival
+  bool device_clock = false;  ///< true: the camera's clock; false: times of arrival
   Estimate rate_hz{};
-  Estimate jitter_ms{};                ///< standard deviation of the times from a line over the numbers
-  double largest_deviation_ms = 0;     ///< of a time from that line
+  Estimate jitter_ms{};                ///< standard deviation of the times from a straight line over the frame numbers
+  double largest_deviation_ms = 0;     ///< largest deviation of a time from that line
   std::optional<double> arrival_ms{};  ///< standard deviation of the times of arrival from such a line
   std::uint64_t lost = 0;              ///< frames that never arrived
   std::uint64_t longest_gap = 0;       ///< largest number of successive lost frames
 };
 
-/// Returns the timing of frames, given in the order of their arrival. Errors: `invalid_input` (fewer than ten frames,
-/// times that do not rise).
+/// Returns the timing of frames, which are in the order of their arrival. Errors: `invalid_input` (fewer than ten
+/// frames, times that do not increase).
 [[nodiscard]] Result<TimingMeasure> frame_timing(std::span<const FrameTimes> times);
 
 /// Takes frames and returns their timing. Errors: those of FrameTaker::next() and frame_timing().
@@ -46,27 +46,27 @@ struct TimingMeasure {
 /// Options of measure_latency().
 struct LatencyOptions {
   double speed_mm_s = 100;  ///< of the plate
-  double travel_mm = 20;    ///< of a run
-  int runs = 8;             ///< to the right and to the left in turn
+  double travel_mm = 20;    ///< length of a run
+  int runs = 8;             ///< alternately to the right and to the left
 };
 
 /// Result of measure_latency().
 struct LatencyMeasure {
   double speed_mm_s = 0;
-  std::vector<double> runs_ms{};    ///< of each run
-  std::vector<double> frames_ms{};  ///< of each frame of the runs
-  /// Time from a place of the target to the time stamp of the frame that shows it, including the time constant of the
-  /// detector and half of its exposure. Positive: the frame is late.
+  std::vector<double> runs_ms{};    ///< latency in each run
+  std::vector<double> frames_ms{};  ///< latency in each frame of the runs
+  /// Time from the moment at which the target is at a place to the time stamp of the frame that shows it there.
+  /// Includes the time constant of the detector and half of its exposure. Positive: the frame is late.
   Estimate latency_ms{};
 };
 
-/// Place of the plate along x of the stage in a frame, in mm, as the camera shows it; empty: not found.
+/// Returns the place of the plate along x of the stage in a frame, in mm, as the camera shows it; empty: not found.
 using PlaceInFrame = std::function<std::optional<double>(const Frame& frame, double expected_mm)>;
 /// Presents the plate at a place along x, in mm.
 using PutAt = std::function<Result<void>(double x_mm)>;
 
-/// Measures the latency in runs of the stage. Errors: those of stage and camera; `invalid_input` (a stage without runs
-/// or without the camera's clock, or too few frames of a run).
+/// Measures the latency in runs of the stage. Errors: those of stage and camera; `invalid_input` (a stage that cannot
+/// run or does not use the camera's clock, or too few frames in a run).
 [[nodiscard]] Result<LatencyMeasure> measure_latency(FrameTaker& taker, MovingTarget* stage, const PutAt& put,
                                                      const PlaceInFrame& place, const LatencyOptions& options,
                                                      const std::stop_token& stop);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera from its first image on: level, fixed pattern and noise against time and its own temperature.
+// Warm-up of a camera from its first image: level, fixed pattern and noise as functions of time and of its own
+// temperature.
 #pragma once
 
 #include <functional>
@@ -16,21 +17,21 @@ namespace todbench {
 
 /// Options of measure_warm_up().
 struct WarmUpOptions {
-  double duration_s = 600;         ///< of the observation, > 0
+  double duration_s = 600;         ///< duration of the observation, > 0
   double start_s = 0;              ///< time of the first image since power-on; all times count from power-on
   double frame_rate_hz = 0;        ///< stated by the camera; 0: not stated
-  double stable_k_per_min = 0.05;  ///< the level is stable when it drifts more slowly, > 0
+  double stable_k_per_min = 0.05;  ///< the level is stable once its drift is slower than this, > 0
 };
 
 /// Successive frames of a uniform scene, in kelvin of the camera's scale.
 struct WarmUpGroup {
-  double time_s = 0;  ///< mean
+  double time_s = 0;  ///< mean time
   int frames = 0;
   double mean_k = 0;
-  double pattern_k = 0;  ///< standard deviation over the pixels without shading and temporal noise
-  double noise_k = 0;    ///< temporal, of a pixel
+  double pattern_k = 0;  ///< standard deviation over the pixels, without shading and temporal noise
+  double noise_k = 0;    ///< temporal noise of a pixel
   std::optional<double> camera_temperature_c{};
-  bool corrected = false;  ///< a correction happened since the group before
+  bool corrected = false;  ///< a correction happened since the previous group
 };
 
 /// Change of the level with the camera's own temperature, by least squares.
@@ -41,12 +42,13 @@ struct TemperatureDrift {
 /// Result of measure_warm_up().
 struct WarmUp {
   std::vector<WarmUpGroup> groups;
-  /// Drift during the longest time without a correction; empty if it could not be fitted, then the reason is stated.
+  /// Drift during the longest interval without a correction; empty if the fit failed, and `reasons` contains the
+  /// reason.
   std::optional<DriftLaw> law{};
-  /// Time from which the level drifts more slowly than the bound; empty: not within the observation, or no law.
+  /// Time after which the level drifts more slowly than the limit; empty: not within the observation, or no law.
   std::optional<double> stable_s{};
   std::optional<TemperatureDrift> by_temperature{};
-  std::vector<std::string> reasons;  ///< for absent values
+  std::vector<std::string> reasons;  ///< reasons for absent values
 };
 
 /// Returns the temperature of the camera in degrees Celsius; empty: not reported.
@@ -57,8 +59,8 @@ using ReadCameraTemperature = std::function<std::optional<double>()>;
 [[nodiscard]] Result<WarmUp> measure_warm_up(FrameTaker& taker, const WarmUpOptions& options,
                                              const ReadCameraTemperature& temperature, const std::stop_token& stop);
 
-/// Returns the time from which |d level / dt| stays below `k_per_min` by the law; empty if that is after the last
-/// group. For an approach A (1 - exp(-t / T)) it is T ln(A / (T rate)).
+/// Returns the time after which |d level / dt| stays below `k_per_min` according to the law; empty if that is after the
+/// last group. For an approach A (1 - exp(-t / T)) it is T ln(A / (T rate)).
 [[nodiscard]] std::optional<double> stable_from(const DriftLaw& law, double k_per_min);
 
 }  // namespace todbench
