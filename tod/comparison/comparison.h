@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Comparison of two TOD curves: different, equivalent or inconclusive.
+// Comparison of two TOD curves: the cameras are different, equivalent, or the result is inconclusive.
 #pragma once
 
 #include <optional>
@@ -11,106 +11,110 @@
 
 namespace todbench {
 
-/// equivalent: the 90 % interval of the ratio lies inside the margin. different: it does not, and p_difference < 0.05.
-/// inconclusive: neither, or a threshold or a side of an interval is missing, or a number is not fit for a decision.
-/// Equivalent has priority if a difference is both proven and smaller than the margin: many trials make any small
-/// difference significant, and the margin states which differences matter.
+/// Verdict of a comparison. equivalent: the 90 % interval of the ratio lies inside the margin. different: it does not,
+/// and p_difference < 0.05. inconclusive: neither, or a threshold or a side of an interval is missing, or a value is
+/// not fit for a decision. If a difference is proven but smaller than the margin, equivalent has priority: many trials
+/// make any small difference significant, and the margin states which differences matter.
 enum class ComparisonVerdict { equivalent, different, inconclusive };
 [[nodiscard]] std::string_view to_string(ComparisonVerdict verdict);
 
 /// Options of compare().
 struct ComparisonOptions {
-  /// Equivalence margin m on the ratio of acuities, chosen beforehand: ratio within [1/(1+m), 1+m].
+  /// Equivalence margin m for the ratio of acuities, chosen beforehand: the ratio must lie within [1/(1+m), 1+m].
   double margin_percent = 10;
   FitOptions fit;  ///< form and lapse with which both curves were fitted
-  /// Curve B belongs to a simulation that was shown the contrasts measured by the camera of A: the random uncertainty
-  /// of these contrasts is then uncertainty of the ratio.
+  /// True if curve B belongs to a simulation that was shown the contrasts measured by the camera of A. The random
+  /// uncertainty of these contrasts is then part of the uncertainty of the ratio.
   bool b_shown_contrasts_of_a = false;
 };
 
-/// Ratio of a camera to its twin from common phases (paired_ratio.h), at one contrast.
+/// Ratio of a camera to its twin at one contrast, from common phases (paired_ratio.h).
 struct RatioOfPairs {
-  double ratio = 1;  ///< acuity of A over that of B
+  double ratio = 1;  ///< acuity of A divided by that of B
   Interval ci95{}, ci90{};
   double se_ln_ratio = 0;
   double degrees_of_freedom = 1;
   double p_difference = 1, p_equivalence = 1;  ///< as in ComparisonPoint
   ComparisonVerdict verdict = ComparisonVerdict::inconclusive;
-  IntervalKind interval = IntervalKind::two_way;  ///< clusters that the variance is taken over
-  double twin_share = 0;                          ///< share of the variance from the noise draws of the twin
+  IntervalKind interval = IntervalKind::two_way;  ///< clusters over which the variance is computed
+  double twin_share = 0;                          ///< share of the variance that comes from the noise draws of the twin
   int draws = 0;                                  ///< noise draws of the twin in each presentation
   int answers = 0;                                ///< pairs
 };
 
-/// One contrast. Ratio is acuity of A over acuity of B (= S75 of B over S75 of A). Its intervals combine the inflated
-/// profile intervals of both thresholds asymmetrically on the log scale (method of variance estimates recovery, Zou and
-/// Donner 2008). If a side of a threshold is open, the side of the ratio that depends on it is missing.
+/// One contrast. The ratio is acuity of A divided by acuity of B (= S75 of B / S75 of A). Its intervals combine the
+/// inflated profile intervals of both thresholds asymmetrically on the log scale (method of variance estimates
+/// recovery, Zou and Donner 2008). If a side of a threshold's interval is open, the side of the ratio that depends on
+/// it is missing.
 struct ComparisonPoint {
   double set_delta_t_k = 0;
   double delta_t_a_k = 0, delta_t_b_k = 0;
   std::optional<double> ratio{};
   Interval ratio_ci95{};
   Interval ratio_ci90{};
-  /// Likelihood-ratio test of a common threshold. The statistic is divided by the variance inflation and, with
-  /// clusters, referred to Student's t with the degrees of freedom of Welch and Satterthwaite.
+  /// Likelihood-ratio test of a common threshold. The statistic is divided by the variance inflation. With clusters,
+  /// its distribution is Student's t with the degrees of freedom of Welch and Satterthwaite.
   std::optional<double> p_difference{};
-  /// Two one-sided tests on the log ratio (Schuirmann 1987) with the spread of either side of `ratio_ci90`: below 0.05
-  /// exactly if that interval lies inside the margin. Missing if a side of it is missing.
+  /// Two one-sided tests on the log ratio (Schuirmann 1987), with the spread of each side of `ratio_ci90`. It is below
+  /// 0.05 exactly if that interval lies inside the margin. Missing if a side of the interval is missing.
   std::optional<double> p_equivalence{};
   double margin_percent = 0;
   ComparisonVerdict verdict = ComparisonVerdict::inconclusive;
-  /// The threshold of A or of B is not fit for a decision, or their functions differ. Every verdict of this point,
-  /// including that of the paired ratio, is then inconclusive.
+  /// True if the threshold of A or of B is not fit for a decision, or if their functions differ. Every verdict of this
+  /// point, including the verdict of the paired ratio, is then inconclusive.
   bool withheld = false;
-  /// Additional ratio if both curves have the same phases; it then determines the verdict. Empty otherwise.
+  /// Additional ratio if both curves have the same phases. It then determines the verdict. Empty otherwise.
   std::optional<RatioOfPairs> paired{};
 };
 
 /// Result of compare().
 struct Comparison {
   std::vector<ComparisonPoint> points;
-  /// Different if any point is, else inconclusive if any is, else equivalent. Uses the paired ratios if there are any.
+  /// Different if any point is different; otherwise inconclusive if any point is inconclusive; otherwise equivalent.
+  /// Uses the paired ratios if there are any.
   ComparisonVerdict verdict = ComparisonVerdict::inconclusive;
-  /// Findings that make a threshold of either curve unfit or prevent the comparison of the two. Empty: not examined
-  /// (records of earlier programs).
+  /// Findings that make a threshold of either curve unfit or prevent the comparison of the two curves. Empty: not
+  /// examined (records of earlier programs).
   std::optional<Adequacy> adequacy{};
 };
 
-/// Adds a finding about the two curves. A finding that makes them unfit leaves every point and the whole inconclusive.
+/// Adds a finding about the two curves. A finding that makes them unfit makes every point and the overall verdict
+/// inconclusive.
 void add_finding(Comparison& comparison, AdequacyFinding finding);
 
 /// Adds a paired ratio to a point and updates the overall verdict. If the point's verdict is withheld, the paired
 /// verdict becomes inconclusive.
 void add_paired(Comparison& comparison, std::size_t point, const RatioOfPairs& paired);
 
-/// Whether a paired ratio decides at every contrast.
+/// Returns whether there is a paired ratio, which decides, at every contrast.
 [[nodiscard]] bool decided_by_pairs(const Comparison& comparison);
 
-/// The comparison with the paired ratio and its quantities in place of the unpaired ones at each point that has one.
+/// Returns the comparison in which the paired ratio and its values replace the unpaired ones at each point that has a
+/// paired ratio.
 [[nodiscard]] Comparison as_decided(Comparison comparison);
 
-/// Likelihood-ratio comparison of two data sets at one contrast, with a common slope or separate slopes. Trials count
-/// as independent.
+/// Likelihood-ratio comparison of two data sets at one contrast, with a common slope or separate slopes. Assumes
+/// independent trials.
 struct ThresholdTest {
   double lr = 0;  ///< 2 (ll1 - ll0), chi-square with one degree of freedom
   double p_difference = 1;
   double ln_ratio = 0;       ///< ln(threshold A / threshold B)
-  double se_ln_ratio = 0;    ///< observed information; 0 if it is singular (a step)
+  double se_ln_ratio = 0;    ///< from the observed information; 0 if it is singular (a step)
   double p_equivalence = 1;  ///< TOST, Wald, margin on the ratio; 1 without a standard error
   double ll_separate = 0, ll_common = 0;
 };
 /// Slopes of the two data sets.
 enum class SlopeModel { shared, separate };
-/// Tests whether two thresholds differ, and whether they are equivalent. Errors: `invalid_input` (wrong levels, a
-/// margin that is not positive, a set without a threshold). A free lapse is free in each set.
+/// Tests whether two thresholds differ, and whether they are equivalent. A free lapse is free in each set. Errors:
+/// `invalid_input` (wrong levels, a margin that is not positive, a set without a threshold).
 [[nodiscard]] Result<ThresholdTest> test_thresholds(std::span<const Level> a, std::span<const Level> b,
                                                     SlopeModel slopes, double margin_percent,
                                                     const FitOptions& options);
 
-/// Pairs the points of two curves by set contrast: contrasts match if they agree to 0.5 % and each is the nearest to
-/// the other. Exchanged arguments give inverse ratios and the same verdicts. A point is inconclusive if its threshold
-/// is unfit in either curve; all points are if both curves come from the same answers. Errors: `invalid_input` (no
-/// common contrast, or different observers).
+/// Compares the points of two curves that have the same set contrast: contrasts match if they agree to 0.5 % and each
+/// is the nearest to the other. Exchanged arguments yield inverse ratios and the same verdicts. A point is inconclusive
+/// if its threshold is unfit in either curve; all points are inconclusive if both curves come from the same answers.
+/// Errors: `invalid_input` (no common contrast, or different observers).
 [[nodiscard]] Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const ComparisonOptions& options);
 
 }  // namespace todbench

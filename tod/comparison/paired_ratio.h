@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ratio of camera and twin from common phases: both answered the same presentations, so that common variation cancels.
+// Ratio of camera and twin from common phases: both answered the same presentations, so their common variation cancels.
 #pragma once
 
 #include <optional>
@@ -13,37 +13,37 @@
 
 namespace todbench {
 
-/// The sentence that accompanies a paired ratio in reports: the errors that do not cancel. `measured_once`:
-/// has_contrast_measured_once().
+/// Returns the sentence about the errors that do not cancel, for reports with a paired ratio. `measured_once`: result
+/// of has_contrast_measured_once().
 [[nodiscard]] std::string not_cancelled_by_pairs(bool measured_once);
 
 /// One presentation of one triangle: the answer to the camera's frames and the twin's answers.
 struct PairedAnswer {
   GradedAnswer camera;
-  double twin_probability = 0;  ///< of the correct answer, mean over the twin's draws
-  double twin_variance = 0;     ///< of that mean, from the scatter of the draws
+  double twin_probability = 0;  ///< probability of the correct answer, mean over the twin's draws
+  double twin_variance = 0;     ///< variance of that mean, from the scatter of the draws
 };
 
-/// Functions for the twin's answers if the camera's function differs, or may differ, from that of the twin. The errors
-/// of two functions do not cancel; they are added.
+/// Function for the twin's answers if the camera's function differs, or may differ, from the twin's function. The
+/// errors of two different functions do not cancel; they are added.
 struct OwnFunctions {
   const ProportionTable& twin;
-  double variance = 0;      ///< of ln S75, from both functions
-  bool with_slope = false;  ///< of the twin's fit
+  double variance = 0;      ///< variance of ln S75, from both functions
+  bool with_slope = false;  ///< whether the twin's fit has its own slope
 };
 
-/// Difference estimator of the ratio of acuities camera / twin. ln S75 of both is fitted by quasi-likelihood with the
-/// same function `table` (twin_shape.h; each with its own slope if `with_slope`). The variance of their difference
-/// comes from the differences of each answer's contributions to the two, over set-ups or over presentations and places
-/// (clustered_variance.h). To first order, errors of the function and variation common to camera and twin (the phase of
-/// a presentation) are neither in the difference nor in its interval. Precondition: they share no noise, which would
-/// cancel as well.
+/// Computes the difference estimator of the ratio of acuities camera / twin. ln S75 of both is fitted by
+/// quasi-likelihood with the same function `table` (twin_shape.h), each with its own slope if `with_slope`. The
+/// variance of the difference of both comes from the differences of each answer's contributions, over set-ups or over
+/// presentations and places (clustered_variance.h). To first order, two errors appear neither in the difference nor in
+/// its interval: the error of the function, and the variation common to camera and twin (the phase of a presentation).
+/// Precondition: camera and twin share no noise, because common noise would cancel as well.
 ///
 /// The twin is shown the contrast that the camera measured once in each set-up. Over set-ups, the differences contain
-/// the scatter of this contrast; the part common to all set-ups (`contrast.shared_se_ln_acuity`) is added. The variance
-/// over presentations and places does not contain this scatter, so all of `contrast.se_ln_acuity` is added.
+/// the scatter of this contrast; its part common to all set-ups (`contrast.shared_se_ln_acuity`) is added. The variance
+/// over presentations and places does not contain this scatter, so the whole `contrast.se_ln_acuity` is added.
 ///
-/// `draws` is kept for the record. Verdict as in compare(), with Student's t; equivalent has priority. Errors:
+/// `draws` is stored in the result. Verdict as in compare(), with Student's t; equivalent has priority. Errors:
 /// `invalid_input` (as twin_shape_estimate(), fewer than two clusters, a margin that is not positive, probabilities
 /// outside 0 to 1).
 [[nodiscard]] Result<RatioOfPairs> paired_ratio(std::span<const PairedAnswer> answers, const ProportionTable& table,
@@ -51,8 +51,8 @@ struct OwnFunctions {
                                                 const ContrastScatter& contrast = {},
                                                 const std::optional<OwnFunctions>& own = std::nullopt);
 
-/// Ratio A / B of two cameras from the ratios of both to the same twin, each with its own presentations and independent
-/// errors: degrees of freedom of Welch and Satterthwaite. `draws` is the smaller one.
+/// Returns the ratio A / B of two cameras from the ratios of both to the same twin. Each ratio has its own
+/// presentations and independent errors; degrees of freedom of Welch and Satterthwaite. `draws` is the smaller one.
 [[nodiscard]] RatioOfPairs ratio_of_paired(const RatioOfPairs& a, const RatioOfPairs& b, double margin_percent);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Expected uncertainty of a design, and the chance that a comparison succeeds.
+// Expected uncertainty of a design, and the probability that a comparison succeeds.
 #pragma once
 
 #include <span>
@@ -13,12 +13,12 @@ namespace todbench {
 /// Number of trials of a size and its expected share of correct answers.
 struct PlannedLevel {
   double size = 0;                ///< > 0, any unit
-  double trials = 0;              ///< >= 0, need not be whole
+  double trials = 0;              ///< >= 0, may be fractional
   double proportion_correct = 0;  ///< in [0, 1]
 };
 
 /// Expected result of a design: the fit to counts that equal their expectation, with the uncertainty for `trials`.
-/// Trials count as independent, because clusters are not known beforehand.
+/// Assumes independent trials, because clusters are not known beforehand.
 struct ExpectedFit {
   double threshold = 0, slope = 0, trials = 0;
   double se_ln_threshold = 0;  ///< from the information of the expected counts
@@ -27,34 +27,34 @@ struct ExpectedFit {
 /// the message contains the verdict).
 [[nodiscard]] Result<ExpectedFit> expected_fit(std::span<const PlannedLevel> design, const FitOptions& options);
 
-/// The design with proportions from a psychometric function at its sizes.
+/// Returns the design with proportions from a psychometric function at its sizes.
 [[nodiscard]] std::vector<PlannedLevel> design_at(std::span<const Level> totals, PsychometricForm form,
                                                   double threshold, double slope, double lapse);
 
-/// Probability that two one-sided tests at 5 % find two acuities equivalent within `margin_percent` (ratio inside
-/// [1/(1+m), 1+m]). The logarithm of their ratio is estimated with standard error `se_ln_ratio` > 0; its true value is
-/// `true_ln_ratio`. Normal theory (Schuirmann 1987): exact for normal estimates, 0 if the 90 % interval is wider than
-/// the margin.
+/// Returns the probability that two one-sided tests at 5 % find two acuities equivalent within `margin_percent` (ratio
+/// inside [1/(1+m), 1+m]). The logarithm of their ratio is estimated with standard error `se_ln_ratio` > 0; its true
+/// value is `true_ln_ratio`. Normal theory (Schuirmann 1987): exact for normal estimates, 0 if the 90 % interval is
+/// wider than the margin.
 [[nodiscard]] double equivalence_power(double se_ln_ratio, double margin_percent, double true_ln_ratio);
 
 /// One contrast of a planned comparison.
 struct PlannedComparison {
   double delta_t_k = 0;
-  double se_ln_a = 0, se_ln_b = 0;    ///< expected, of both thresholds
+  double se_ln_a = 0, se_ln_b = 0;    ///< expected standard errors of both thresholds
   double trials_a = 0, trials_b = 0;  ///< per contrast
   [[nodiscard]] double se_ln_ratio() const;
 };
 
-/// Prospects of a comparison over several contrasts.
+/// Expected success of a comparison over several contrasts.
 struct ComparisonOutlook {
   double margin_percent = 0;
-  double power = 0;  ///< probability that every contrast is found equivalent; contrasts independent
-  /// Factor on all trial numbers for a power of 80 %; at or below 1 the plan suffices.
+  double power = 0;  ///< probability that every contrast is found equivalent, for independent contrasts
+  /// Factor on all trial numbers for a power of 80 %; at most 1: the plan is sufficient.
   double trials_factor = 0;
-  double trials_needed_a = 0;  ///< of A per contrast, largest over contrasts, rounded up
+  double trials_needed_a = 0;  ///< trials of A per contrast, largest over contrasts, rounded up
   [[nodiscard]] bool reaches_80_percent() const { return power >= 0.8; }
 };
-/// Computes the prospects. Precondition: at least one contrast, standard errors > 0.
+/// Computes the expected success. Precondition: at least one contrast, standard errors > 0.
 [[nodiscard]] ComparisonOutlook comparison_outlook(std::span<const PlannedComparison> contrasts, double margin_percent);
 
 }  // namespace todbench
