@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Check of an instrument against its table, one command or query after the other.
+// Checks an instrument against its table, one command or query after another.
 #pragma once
 
 #include <stop_token>
@@ -14,8 +14,8 @@ namespace todbench {
 
 /// Outcome of a step.
 enum class StepOutcome {
-  answered,   ///< as the table states
-  failed,     ///< no answer, or another one
+  answered,   ///< the answer agrees with the table
+  failed,     ///< no answer, or a different one
   not_tried,  ///< instrument not reached, or not in the table
 };
 
@@ -29,17 +29,17 @@ struct InstrumentStep {
 
 /// Result of check_instrument().
 struct InstrumentCheck {
-  ScpiIdentity identity;  ///< empty if it was not reached
+  ScpiIdentity identity;  ///< empty if the instrument was not reached
   bool reached = false;   ///< connected and identified
   std::vector<InstrumentStep> steps;
-  /// True if the instrument was reached and no step failed.
+  /// Returns true if the instrument was reached and no step failed.
   [[nodiscard]] bool passed() const;
 };
 
 /// Commands that a check sends.
 enum class InstrumentCommands {
-  none,      ///< queries only: nothing moves
-  in_place,  ///< commands too, each with the instrument's present value
+  none,      ///< queries only: no motion
+  in_place,  ///< also commands, each with the instrument's present value
 };
 
 /// Checks an instrument. Continues after a failed step and reconnects if needed. Errors: `invalid_input` (address),

@@ -16,14 +16,14 @@
 
 namespace todbench {
 
-/// An instrument. Reconnects after a lost connection and then requires the same identity. Errors contain its name. An
-/// instrument that refuses a command or query of its table gives `disconnected`. One thread at a time.
+/// An instrument. It reconnects after a lost connection and then requires the same identity. Errors contain its name.
+/// If the instrument refuses a command or query of its table, the error is `disconnected`. One thread at a time.
 class InstrumentDevice {
  public:
   InstrumentDevice(std::string role, std::string endpoint, ScpiClientOptions options, InstrumentTable table);
 
   [[nodiscard]] Result<void> ensure_connected(const std::stop_token& stop);
-  /// "black body (vendor model, serial S)".
+  /// Returns "black body (vendor model, serial S)".
   [[nodiscard]] std::string name() const;
   [[nodiscard]] const InstrumentTable& table() const { return table_; }
   [[nodiscard]] const std::optional<ScpiClient>& client() const { return client_; }
@@ -33,7 +33,7 @@ class InstrumentDevice {
   /// Returns the numbers in the answer to a query, unconverted.
   [[nodiscard]] Result<std::vector<double>> numbers(const NumberQuestion& question, std::size_t count,
                                                     const std::stop_token& stop);
-  /// Whether the instrument is settled; true also if it has no such query.
+  /// Returns whether the instrument is settled; true also if it has no such query.
   [[nodiscard]] Result<bool> is_settled(const std::stop_token& stop);
 
  private:
@@ -53,24 +53,24 @@ struct BlackBodyReading {
 class BlackBodyDevice : public InstrumentDevice {
  public:
   using InstrumentDevice::InstrumentDevice;
-  /// Lowest and highest difference, in K.
+  /// Returns the lowest and the highest difference, in K.
   [[nodiscard]] Result<std::array<double, 2>> limits(const std::stop_token& stop);
   [[nodiscard]] Result<double> set_point(const std::stop_token& stop);
-  /// Commands a difference unless it already is the set-point.
+  /// Commands a difference unless it is already the set-point.
   [[nodiscard]] Result<void> command(double delta_t_k, const std::stop_token& stop);
   [[nodiscard]] Result<BlackBodyReading> read(const std::stop_token& stop);
   [[nodiscard]] Result<double> measured(const std::stop_token& stop);
-  /// Errors: `disconnected` for an impossible temperature (below 0 K, above 5000 K).
+  /// Reads a temperature. Errors: `disconnected` for an impossible temperature (below 0 K, above 5000 K).
   [[nodiscard]] Result<double> temperature(const NumberQuestion& question, const std::stop_token& stop);
 
   [[nodiscard]] std::string set_command(double delta_t_k) const;
 
-  /// Lowest and highest absolute set-point, in K. Precondition, also of command_absolute(): the table has an absolute
-  /// set-point.
+  /// Returns the lowest and the highest absolute set-point, in K. Precondition, also of command_absolute(): the table
+  /// has an absolute set-point.
   [[nodiscard]] Result<std::array<double, 2>> absolute_limits(const std::stop_token& stop);
   [[nodiscard]] Result<void> command_absolute(double temperature_k, const std::stop_token& stop);
-  /// Reading of the radiator. Errors: also `invalid_input` for a reading so far below the coldest set-point that it
-  /// must be in degrees Celsius.
+  /// Reads the temperature of the radiator. Errors: also `invalid_input` for a value so far below the coldest set-point
+  /// that it must be in degrees Celsius.
   [[nodiscard]] Result<double> radiator(double coldest_k, const std::stop_token& stop);
 
  private:
@@ -92,16 +92,17 @@ class StageDevice : public InstrumentDevice {
   [[nodiscard]] bool holds(Mounting mounting) const;
   /// Commands plate, mounting and place if they differ from the set-points.
   [[nodiscard]] Result<void> command(const TargetState& state, const std::stop_token& stop);
-  /// Plate, mounting and place; values that the stage does not report are taken from `asked`.
+  /// Reads plate, mounting and place. Values that the stage does not report are taken from `asked`.
   [[nodiscard]] Result<TargetState> read(const TargetState& asked, const std::stop_token& stop);
 
   [[nodiscard]] Result<std::string> plate(const std::string& query, const std::stop_token& stop);
   [[nodiscard]] Result<Mounting> mounting(const std::string& query, const std::stop_token& stop);
-  /// Lowest and highest speed of a run, in mm/s. Precondition, also of run_along_x(): the stage has runs.
+  /// Returns the lowest and the highest speed of a run, in mm/s. Precondition, also of run_along_x(): the stage has
+  /// runs.
   [[nodiscard]] Result<std::array<double, 2>> run_speeds(const std::stop_token& stop);
   /// Commands a run along x and reads the run that the stage reports.
   [[nodiscard]] Result<PlateRun> run_along_x(double to_mm, double speed_mm_s, const std::stop_token& stop);
-  /// Precondition: the stage has positions.
+  /// Reads a position. Precondition: the stage has positions.
   [[nodiscard]] Result<cv::Point2d> position(const NumberQuestion& question, const std::stop_token& stop);
   [[nodiscard]] Result<std::vector<double>> travel(const std::stop_token& stop);
   [[nodiscard]] Result<std::vector<std::string>> plate_names(const std::stop_token& stop);

@@ -19,7 +19,7 @@ struct InstrumentAddress {
   enum class Kind { tcp, serial, vxi11 };
   Kind kind = Kind::tcp;
   std::string host;
-  std::uint16_t port = 0;  ///< of VXI-11: 0 queries the port mapper of the host
+  std::uint16_t port = 0;  ///< for VXI-11: 0 queries the port mapper of the host
   std::string device;      ///< path of a serial port; for VXI-11 the logical instrument, "inst0"
 };
 
@@ -36,17 +36,18 @@ class InstrumentLine {
   [[nodiscard]] virtual Result<void> send(std::string_view bytes, TimePoint deadline, const std::stop_token& stop) = 0;
   /// Returns the received bytes, at least one. Errors as send().
   [[nodiscard]] virtual Result<std::string> receive(TimePoint deadline, const std::stop_token& stop) = 0;
-  /// True if a second query before the answer to the first would cancel it (IEEE 488.2, 6.3.2.3: INTERRUPTED).
+  /// Returns true if a second query before the answer to the first would cancel the first (IEEE 488.2, 6.3.2.3:
+  /// INTERRUPTED).
   [[nodiscard]] virtual bool one_at_a_time() const { return false; }
 };
 
 /// Returns a connected, non-blocking TCP socket.
 [[nodiscard]] Result<Descriptor> connect_tcp(const std::string& host, std::uint16_t port,
                                              InstrumentLine::TimePoint deadline, const std::stop_token& stop);
-/// Sends all of `bytes` over a non-blocking descriptor; a socket raises no signal.
+/// Sends all of `bytes` over a non-blocking descriptor. A socket raises no signal.
 [[nodiscard]] Result<void> send_all(int fd, std::string_view bytes, InstrumentLine::TimePoint deadline,
                                     const std::stop_token& stop);
-/// Returns 1 to 4096 bytes.
+/// Receives 1 to 4096 bytes.
 [[nodiscard]] Result<std::string> receive_some(int fd, InstrumentLine::TimePoint deadline, const std::stop_token& stop);
 
 }  // namespace todbench

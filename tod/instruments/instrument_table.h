@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command table of an instrument as data: commands, answers and settling. Any black body or plate stage is
-// described by one of these values, read from a file (docs/reference/instruments.md).
+// The command table of an instrument as data: commands, answers and settling. One value of this type describes any
+// black body or plate stage; it is read from a file (docs/reference/instruments.md).
 #pragma once
 
 #include <array>
@@ -31,29 +31,29 @@ inline constexpr std::array serial_bauds{1200, 2400, 4800, 9600, 19200, 38400, 5
 
 /// Protocol of an instrument. The defaults are those of IEEE 488.2 and SCPI.
 struct InstrumentSpeech {
-  /// When the error query is sent.
+  /// Time at which the error query is sent.
   enum class ErrorsAsked {
     with_command,   ///< together with each command and query: the answer precedes the error report
     after_command,  ///< after a query was answered
   };
-  std::string ending = "\n";               ///< after each command
-  char answer_ending = '\n';               ///< a carriage return before it is removed
+  std::string ending = "\n";               ///< line end after each command
+  char answer_ending = '\n';               ///< last character of an answer; a preceding carriage return is removed
   std::uint16_t port = 5025;               ///< default port of an address
-  std::optional<double> answer_timeout_s;  ///< replaces that of the caller
-  double pause_s = 0;                      ///< least time from the end of one exchange to the next
+  std::optional<double> answer_timeout_s;  ///< replaces the timeout of the caller
+  double pause_s = 0;                      ///< minimum time from the end of one exchange to the start of the next
   SerialSettings serial{};
 
   std::string clear = "*CLS";            ///< sent before the first query; empty: none
   std::string identity_query = "*IDN?";  ///< empty: the instrument has none
-  bool identity_of_four = true;   ///< vendor,model,serial,firmware (IEEE 488.2, 10.14); false: any line is a model
+  bool identity_of_four = true;   ///< vendor,model,serial,firmware (IEEE 488.2, 10.14); false: any line is the model
   std::string identity_contains;  ///< text that the identity must contain
 
-  std::string error_query = "SYST:ERR?";  ///< empty: refusals are not reported
+  std::string error_query = "SYST:ERR?";  ///< empty: the instrument does not report refusals
   ErrorsAsked errors_asked = ErrorsAsked::with_command;
-  /// Answers that mean no error; empty: 0,"..." does (SCPI-99 volume 1, 21.8).
+  /// Answers that mean no error; if empty, 0,"..." means no error (SCPI-99 volume 1, 21.8).
   std::vector<std::string> no_error;
   std::string acknowledgement;        ///< answer to a command that is not a query; empty: none
-  std::vector<std::string> refusals;  ///< beginnings of answers that refuse
+  std::vector<std::string> refusals;  ///< beginnings of answers that mean a refusal
 };
 
 /// A unit of the file: value in this program's units = value * scale + offset.
@@ -61,17 +61,18 @@ struct InstrumentUnit {
   std::string name;
   double scale = 1, offset = 0;
 };
-/// Units of temperature differences, in K: "K", "mK", "degC", "degF".
+/// Returns the units of temperature differences, in K: "K", "mK", "degC", "degF".
 [[nodiscard]] std::vector<InstrumentUnit> difference_units();
-/// Units of temperatures, in K: "K", "mK", "degC", "degF".
+/// Returns the units of temperatures, in K: "K", "mK", "degC", "degF".
 [[nodiscard]] std::vector<InstrumentUnit> temperature_units();
-/// Units of positions, in mm: "mm", "um", "m", "in".
+/// Returns the units of positions, in mm: "mm", "um", "m", "in".
 [[nodiscard]] std::vector<InstrumentUnit> length_units();
 
-/// Queries for numbers: one for all, or one for each number.
+/// Queries for numbers: one query for all numbers, or one for each.
 struct NumberQuestion {
   std::vector<std::string> queries;
-  std::string answer;  ///< form of each, "{}" for a number: "{} K"; empty: the expected numbers, separated by commas
+  std::string answer;  ///< form of each answer, "{}" for a number: "{} K"; empty: the expected numbers, separated by
+                       ///< commas
   [[nodiscard]] bool asks() const { return !queries.empty(); }
 };
 
@@ -81,36 +82,36 @@ struct SettledRule {
   std::optional<int> bit;            ///< number of a bit in a 16-bit register; empty: `answers` applies
   bool bit_means_settling = true;    ///< the bit is set while settling (true) or once settled (false)
   std::vector<std::string> answers;  ///< answers that mean settled, if `bit` is empty
-  double dwell_s = 0;                ///< time that it has to stay within the tolerance
+  double dwell_s = 0;                ///< time that the value must stay within the tolerance
 };
 
 /// Absolute set-point of a black body, in BlackBodyWords::absolute_unit.
 struct AbsoluteWords {
-  int decimals = 4;          ///< of a number that is sent
+  int decimals = 4;          ///< of the number in a command
   std::string set;           ///< "SOUR:TEMP:ABS {}"
-  NumberQuestion set_point;  ///< empty: commanded each time
+  NumberQuestion set_point;  ///< empty: the set-point is commanded each time
   NumberQuestion limits;     ///< lowest and highest; empty: limits_k
   std::array<double, 2> limits_k{0, 0};
-  double tolerance_k = 0.002;  ///< largest difference of the radiator's reading and the set-point that is reached
+  double tolerance_k = 0.002;  ///< largest difference between the radiator's reading and the set-point that is accepted
 };
 
 /// A differential black body.
 struct BlackBodyWords {
   InstrumentUnit unit{"K"};
-  int decimals = 4;          ///< of a number that is sent
+  int decimals = 4;          ///< of the number in a command
   std::string set;           ///< "SOUR:TEMP:DIFF {}"
-  NumberQuestion set_point;  ///< empty: commanded each time
+  NumberQuestion set_point;  ///< empty: the set-point is commanded each time
   NumberQuestion limits;     ///< lowest and highest; empty: limits_k
   std::array<double, 2> limits_k{0, 0};
   NumberQuestion measured;
-  double tolerance_k = 0.002;  ///< largest difference of measured and requested that counts as reached
+  double tolerance_k = 0.002;  ///< largest difference between measured and requested value that is accepted
   NumberQuestion plate;        ///< temperature of the surround; empty: not reported
-  NumberQuestion radiator;     ///< of the black body behind the plate; empty: not reported
+  NumberQuestion radiator;     ///< temperature of the black body behind the plate; empty: not reported
   InstrumentUnit absolute_unit{"K"};
   std::optional<AbsoluteWords> absolute{};  ///< only with a `radiator`
 };
 
-/// Positions of a plate in its own plane. Without it, the plate is shifted by hand.
+/// Positions of a plate in its own plane. Without this table, the operator shifts the plate by hand.
 struct StagePosition {
   InstrumentUnit unit{"mm"};
   int decimals = 4;
@@ -122,8 +123,8 @@ struct StagePosition {
   double tolerance_mm = 0.005;
 };
 
-/// Runs along x at constant speed, in the unit of the position and in this unit per second. Without it the stage cannot
-/// run.
+/// Runs along x at constant speed, in the unit of the position and in this unit per second. Without this table the
+/// stage cannot run.
 struct StageRun {
   std::string set;        ///< "SOUR:SCAN {},{}": destination, speed
   NumberQuestion limits;  ///< lowest and highest speed; empty: limits_mm_s
@@ -132,11 +133,11 @@ struct StageRun {
   NumberQuestion measured;
 };
 
-/// A selection by a word: a plate, a mounting.
+/// A selection by a word, such as a plate or a mounting.
 struct StageChoice {
   std::string set;        ///< "ROUT:PLAT {}"; empty: only one exists
-  std::string set_point;  ///< query of the requested word; empty: commanded each time
-  std::string measured;   ///< query of the word in place; empty: the requested one, once settled
+  std::string set_point;  ///< query of the requested word; empty: the word is commanded each time
+  std::string measured;   ///< query of the word in place; empty: the requested word is assumed once settled
 };
 
 /// A stage that moves plates in front of the camera.
@@ -146,7 +147,7 @@ struct StageWords {
   std::string catalogue;                         ///< query of the names of all plates; empty: `plates`
   std::vector<std::string> plates, plate_words;  ///< names of plates and the stage's words for them
   StageChoice mounting;
-  std::array<std::string, all_mountings.size()> mounting_words;  ///< empty: mounting not available
+  std::array<std::string, all_mountings.size()> mounting_words;  ///< empty: this mounting is not available
   std::optional<StagePosition> position;
   std::optional<StageRun> run;  ///< only with a position
 };
@@ -162,18 +163,18 @@ struct InstrumentTable {
   InstrumentKind kind = InstrumentKind::black_body;
   InstrumentSpeech speech;
   SettledRule settled;
-  BlackBodyWords black_body;  ///< if kind is black_body
+  BlackBodyWords black_body;  ///< used if kind is black_body
   StageWords stage;
 };
 
-/// Numbers in an answer of the form `form`: "{}" stands for a number, blanks may differ, all other characters must
-/// agree. Empty if the answer does not fit or a number is not finite.
+/// Returns the numbers in an answer of the form `form`: "{}" stands for a number, blanks may differ, all other
+/// characters must agree. Empty if the answer does not fit or a number is not finite.
 [[nodiscard]] std::optional<std::vector<double>> numbers_in(std::string_view answer, std::string_view form);
-/// Number of "{}" in a text.
+/// Returns the number of "{}" in a text.
 [[nodiscard]] std::size_t places_in(std::string_view form);
-/// A command with words in the places of "{}", in their order. Precondition: as many places as words.
+/// Returns a command in which `words` replace "{}" in order. Precondition: as many "{}" as words.
 [[nodiscard]] std::string command_of(std::string_view form, const std::vector<std::string>& words);
-/// "{}" separated by commas, `count` times.
+/// Returns `count` times "{}", separated by commas.
 [[nodiscard]] std::string comma_form(std::size_t count);
 
 }  // namespace todbench

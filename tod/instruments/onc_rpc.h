@@ -18,7 +18,7 @@ namespace todbench {
 class XdrWriter {
  public:
   void number(std::uint32_t value);
-  /// Opaque data or a string: length, bytes, zeros up to the next unit.
+  /// Appends opaque data or a string: length, bytes, zeros up to the next unit.
   void bytes(std::string_view value);
   [[nodiscard]] const std::string& data() const { return data_; }
 
@@ -26,7 +26,7 @@ class XdrWriter {
   std::string data_;
 };
 
-/// Reads XDR data. Results are empty after the data has ended too early.
+/// Reads XDR data. Results are empty once the data have ended prematurely.
 class XdrReader {
  public:
   explicit XdrReader(std::string_view data) : data_(data) {}
@@ -37,10 +37,10 @@ class XdrReader {
   std::string_view data_;
 };
 
-/// A message as one fragment with its record mark (RFC 5531, section 11).
+/// Returns a message as one fragment with its record mark (RFC 5531, section 11).
 [[nodiscard]] std::string rpc_record(std::string_view message);
-/// Removes and returns the first whole record of `received`; empty while it is incomplete. Errors: `disconnected` (more
-/// than 1 MiB).
+/// Removes and returns the first whole record of `received`; empty while the record is incomplete. Error:
+/// `disconnected` (more than 1 MiB).
 [[nodiscard]] Result<std::optional<std::string>> take_rpc_record(std::string& received);
 
 /// A connection to the programs of one server. One thread at a time.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opens the transport that an address names.
+// Opens the transport for an address.
 #pragma once
 
 #include <memory>

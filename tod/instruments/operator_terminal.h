@@ -21,12 +21,12 @@ class LineSource {
   [[nodiscard]] virtual Result<std::string> next_line(const std::stop_token& stop) = 0;
 };
 
-/// Lines from a descriptor that the caller owns, e.g. 0 for standard input. It is waited on with poll(): no other code
-/// may read or buffer it. Lines are truncated to 4096 characters.
+/// Returns a source of lines from a descriptor that the caller owns, e.g. 0 for standard input. The source waits with
+/// poll(): no other code may read or buffer the descriptor. Lines are truncated to 4096 characters.
 [[nodiscard]] std::unique_ptr<LineSource> descriptor_lines(int fd);
 
-/// Writes the steps and reads until an answer arrives: an empty line is `done`, "q" is `stop`. `out` must outlive the
-/// returned function.
+/// Returns a function that writes the steps and reads until an answer arrives: an empty line is `done`, "q" is `stop`.
+/// `out` must outlive the returned function.
 [[nodiscard]] AskOperator operator_at_terminal(std::ostream& out, std::shared_ptr<LineSource> answers);
 
 }  // namespace todbench

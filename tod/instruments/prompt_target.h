@@ -16,14 +16,14 @@ namespace todbench {
 struct PromptTargetOptions {
   /// Description of the manual equipment, for the report.
   std::string description = "set by hand by the operator";
-  /// Time base of settling_s, here the time that the operator took.
+  /// Time base of settling_s, which here is the time that the operator took.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };
 
-/// present() requests the changes since the last state and waits for the answer. PresentedTarget::state is the
-/// requested state, unchecked and without temperatures. sets_shift is false: a new shift requests a slight movement,
-/// and registration measures it. The answer `stop` gives `interrupted`. After any failure the next request states
-/// everything again.
+/// Returns a target whose present() requests the changes since the last state and waits for the answer.
+/// PresentedTarget::state is the requested state, unchecked and without temperatures. sets_shift is false: for a new
+/// shift the operator is asked for a slight movement, and registration measures it. The answer `stop` results in
+/// `interrupted`. After any failure the next request states the complete state again.
 [[nodiscard]] std::unique_ptr<Target> prompt_target(AskOperator ask, PromptTargetOptions options = {});
 
 }  // namespace todbench

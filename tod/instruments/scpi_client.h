@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One instrument with a line-based protocol: SCPI over a raw TCP socket ("SCPI-RAW" of LXI instruments, usually port
-// 5025) unless its table states another.
+// A client of one instrument with a line-based protocol. By default this is SCPI over a raw TCP socket ("SCPI-RAW" of
+// LXI instruments, usually port 5025); the instrument's table may state another protocol.
 #pragma once
 
 #include <chrono>
@@ -24,17 +24,17 @@ struct ScpiClientOptions {
   std::size_t longest_answer = 8192;  ///< characters; a peer that sends more without a line end is disconnected
 };
 
-/// The four fields of *IDN? (IEEE 488.2, 10.14). Only `model` is set for an instrument without this answer.
+/// The four fields of *IDN? (IEEE 488.2, 10.14). Only `model` is set for an instrument without this form of answer.
 struct ScpiIdentity {
   std::string vendor, model, serial, firmware;
   bool operator==(const ScpiIdentity&) const = default;
 };
-/// "vendor model, serial S"
+/// Returns "vendor model, serial S".
 [[nodiscard]] std::string to_text(const ScpiIdentity& identity);
 
-/// A connection. One thread at a time. Each exchange is followed by SYST:ERR? (or the error query of the table), so
-/// that a refused command is reported at once as an error. After `disconnected`, `timeout` or `interrupted` the
-/// connection is closed, because a late answer would be taken for the next one: connect again.
+/// A connection. One thread at a time. SYST:ERR? (or the error query of the table) follows each exchange, so a refused
+/// command is reported at once as an error. After `disconnected`, `timeout` or `interrupted` the connection is closed,
+/// because a late answer would be taken for the next one. Connect again then.
 class ScpiClient {
  public:
   /// Connects to an instrument. `endpoint`: as for instrument_address(). Clears the instrument's error queue and sends
@@ -46,12 +46,14 @@ class ScpiClient {
   [[nodiscard]] const ScpiIdentity& identity() const { return identity_; }
   [[nodiscard]] bool is_open() const { return line_ != nullptr; }
 
-  /// Sends a command that has no answer. Errors: `invalid_input` with the instrument's message if it refuses.
+  /// Sends a command that has no answer. Error: `invalid_input` with the instrument's message if it refuses the
+  /// command.
   [[nodiscard]] Result<void> command(std::string_view text, const std::stop_token& stop);
-  /// Sends a query and returns its answer without the line end. Errors: `invalid_input` if the instrument refuses.
+  /// Sends a query and returns its answer without the line end. Error: `invalid_input` if the instrument refuses the
+  /// query.
   [[nodiscard]] Result<std::string> query(std::string_view text, const std::stop_token& stop);
-  /// Returns the finite numbers of an answer of the form `form` (numbers_in()). Any other answer is `disconnected`,
-  /// because later answers cannot be trusted.
+  /// Returns the finite numbers of an answer of the form `form` (numbers_in()). For any other answer the error is
+  /// `disconnected`, because later answers cannot be trusted.
   [[nodiscard]] Result<std::vector<double>> query_form(std::string_view text, std::string_view form,
                                                        const std::stop_token& stop);
 
@@ -69,7 +71,7 @@ class ScpiClient {
   [[nodiscard]] Result<void> ask_for_errors(std::string_view text, const std::stop_token& stop);
   [[nodiscard]] tl::unexpected<Error> give_up(Error error);
 
-  std::unique_ptr<InstrumentLine> line_;  ///< null after it was closed
+  std::unique_ptr<InstrumentLine> line_;  ///< null once closed
   ScpiClientOptions options_;
   InstrumentSpeech speech_;
   ScpiIdentity identity_;
@@ -77,9 +79,9 @@ class ScpiClient {
   TimePoint last_exchange_{};
 };
 
-/// Splits an answer at commas outside quotes, removes quotes, and replaces doubled quotes inside them by one.
+/// Splits an answer at commas outside quotes, removes quotes, and replaces doubled quotes inside them by single ones.
 [[nodiscard]] std::vector<std::string> scpi_fields(std::string_view answer);
-/// A text as SCPI string data: in quotes, with inner quotes doubled.
+/// Returns a text as SCPI string data: in quotes, with inner quotes doubled.
 [[nodiscard]] std::string scpi_quoted(std::string_view text);
 
 }  // namespace todbench

@@ -24,13 +24,14 @@ struct ScpiTargetOptions {
   InstrumentTable stage_table;
   std::chrono::milliseconds settle_timeout{600'000};  ///< for one present(), by `now`
   std::chrono::milliseconds poll_interval{100};
-  std::chrono::milliseconds report_interval{500};  ///< interval of on_wait, by `now`, also before the first call
+  std::chrono::milliseconds report_interval{500};  ///< time between calls of on_wait, by `now`, also before the first
+                                                   ///< call
   OnTargetWait on_wait{};
   double settling_band = 0.1;  ///< largest relative distance from the set contrast for ContrastWait::within_band
-  /// Largest relative rate of the contrast for ContrastWait::within_band, 1/s: a lag of 0.1 s between the triangles of
-  /// a plate is 0.6 %.
+  /// Largest relative rate of the contrast for ContrastWait::within_band, 1/s. At the default, a lag of 0.1 s between
+  /// the triangles of a plate changes the contrast by 0.6 %.
   double max_relative_rate_per_s = 0.06;
-  /// States that a run will request: checked against the limits and the plates of the instruments when they are opened.
+  /// States that a run will request. They are checked against limits and plates of the instruments during opening.
   std::vector<TargetState> requested{};
   std::vector<double> temperatures_k{};  ///< absolute temperatures that a run will request, checked likewise
   ScpiClientOptions connection;
@@ -42,14 +43,14 @@ struct ScpiTargetOptions {
 /// `invalid_input` for a requested state beyond the limits.
 ///
 /// present() reads the set-points of each instrument and commands only those that differ, so that manual changes are
-/// corrected; an instrument without set-points is commanded each time. It returns when both instruments report that
-/// they are settled *and* the measured values agree with the requested ones for the time that the tables require.
-/// PresentedTarget::state is the measured state.
+/// corrected. An instrument without set-point queries is commanded each time. present() returns when both instruments
+/// report that they are settled *and* the measured values agree with the requested ones for the time that the tables
+/// require. PresentedTarget::state is the measured state.
 ///
-/// Errors of present(): `invalid_input` (state beyond the instruments' limits, reported before anything moves),
-/// `timeout` (names the instrument, the requested and the reached value), `disconnected` (an instrument disconnects,
-/// refuses a command or reports an impossible temperature: below 0 K or above 5000 K). After `disconnected` the next
-/// present() reconnects and requires the same *IDN?.
+/// Errors of present(): `invalid_input` (state beyond the instruments' limits, reported before any motion), `timeout`
+/// (contains the instrument, the requested and the reached value), `disconnected` (an instrument disconnects, refuses a
+/// command or reports an impossible temperature: below 0 K or above 5000 K). After `disconnected` the next present()
+/// reconnects and requires the same *IDN?.
 [[nodiscard]] Result<std::unique_ptr<Target>> open_scpi_target(ScpiTargetOptions options, const std::stop_token& stop);
 
 }  // namespace todbench

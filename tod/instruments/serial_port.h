@@ -12,7 +12,7 @@
 namespace todbench {
 
 /// Opens a port in raw mode, non-blocking and exclusive, and discards waiting bytes. Errors: `not_found` (absent, in
-/// use, or settings refused; for missing rights the message states the remedy).
+/// use, or settings refused; if access is denied, the message contains the remedy).
 [[nodiscard]] Result<Descriptor> open_serial_port(const std::string& path, const SerialSettings& settings);
 
 }  // namespace todbench

@@ -22,8 +22,8 @@ inline constexpr std::uint32_t end_reason = 4;  ///< of device_read: the last by
 inline constexpr std::uint32_t error_timeout = 15;
 }  // namespace vxi11
 
-/// Queries the port mapper of the host unless the address has a port, and links to the named device. The end of an
-/// instrument's message is returned as a line end.
+/// Opens a link to the device in the address. Queries the port mapper of the host unless the address states a port. The
+/// end of an instrument's message is returned as a line end.
 [[nodiscard]] Result<std::unique_ptr<InstrumentLine>> open_vxi11_line(
     const InstrumentAddress& address, InstrumentLine::TimePoint deadline, const std::stop_token& stop,
     std::uint16_t port_mapper_port = vxi11::port_mapper_port);
