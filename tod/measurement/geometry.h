@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Check whether a plate can be measured at a distance: size of the picture and windows of the observer.
+// Checks whether a plate can be measured at a distance: size of the picture and windows of the observer.
 #pragma once
 
 #include <cstddef>
@@ -35,16 +35,16 @@ struct TrianglesTooNear {
 /// Reason why a geometry cannot be measured.
 using Misfit = std::variant<PlateBeyondPicture, TrianglesTooNear>;
 
-/// Everything that cannot be measured with this geometry; empty if all fits. Plates that are too large come first,
-/// because they explain the rest. Errors: `invalid_input` (no distance, no IFOV), those of the observer.
+/// Returns all reasons why this geometry cannot be measured; empty if it can. Plates that are too large come first,
+/// because they explain the other reasons. Errors: `invalid_input` (no distance, no IFOV), those of the observer.
 [[nodiscard]] Result<std::vector<Misfit>> find_misfits(const MeasurementOptions& options, Observer& observer,
                                                        cv::Size picture);
 
-/// One sentence, for example:
-/// "plate tcat-a: its 400 x 300 mm cover 800 x 600 pixels at 2.00 m, but the picture has 640 x 480 pixels"
+/// Returns one sentence, for example: "plate tcat-a: its 400 x 300 mm cover 800 x 600 pixels at 2.00 m, but the picture
+/// has 640 x 480 pixels"
 [[nodiscard]] std::string sentence(const Misfit& misfit);
 
-/// Sentences for the first `most` misfits, and the number of the others.
+/// Returns sentences for the first `most` misfits, and the number of the others.
 [[nodiscard]] std::string sentences(const std::vector<Misfit>& misfits, std::size_t most);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contrast of a camera whose counts are not temperatures: grey levels of the large triangles, frame by frame.
+// Contrast of a camera whose counts are not temperatures: grey levels of the large triangles in each frame.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace todbench {
 /// Unit in which the contrast of the large triangles is measured.
 enum class ContrastUnit {
   kelvin,  ///< kelvin of the camera's temperature scale
-  /// For a camera with gain control. The target gives the contrast in kelvin; the large triangles of every frame give
+  /// For a camera with gain control. The target reports the contrast in kelvin; the large triangles of every frame show
   /// it in grey levels.
   grey_levels,
 };
@@ -26,7 +26,7 @@ inline constexpr std::array all_contrast_units{ContrastUnit::kelvin, ContrastUni
 [[nodiscard]] constexpr std::string_view to_string(ContrastUnit unit) {
   return unit == ContrastUnit::grey_levels ? "grey-levels" : "kelvin";
 }
-/// Estimator of levels in this unit: grey levels are coarse, kelvin are fine.
+/// Returns the estimator of levels in this unit: grey levels are coarse, kelvin are fine.
 [[nodiscard]] constexpr LevelEstimate level_estimate(ContrastUnit unit) {
   return unit == ContrastUnit::grey_levels ? LevelEstimate::mean : LevelEstimate::median;
 }
@@ -35,29 +35,30 @@ inline constexpr std::array all_contrast_units{ContrastUnit::kelvin, ContrastUni
 struct GreySteps {
   double noise_levels = 0;  ///< standard deviation of a pixel in a frame, rounding included
   double step_levels = 1;   ///< mean spacing of the levels that occur; above 1 if a gain spreads coarser counts
-  /// Standard deviation of the noise in steps before rounding (Sheppard's correction).
+  /// Returns the standard deviation of the noise before rounding, in steps (Sheppard's correction).
   [[nodiscard]] double noise_steps() const;
-  /// rounding_variance() of this noise. A level without noise between two steps appears as noise of up to half a step:
-  /// a measured noise of up to 0.52 steps is treated as zero.
+  /// Returns rounding_variance() of this noise. Without noise, a level between two steps appears as noise of up to half
+  /// a step. Measured noise of up to 0.52 steps is therefore treated as zero.
   [[nodiscard]] double rounding_variance_steps() const;
 };
 
-/// Returns the spacing of the counts within three standard deviations of the median; `lowest`, `highest`: smallest and
-/// largest count of each pixel. If only one occurs despite the noise, the step is the distance to the next count.
+/// Returns the spacing of the counts within three standard deviations of the median. `lowest`, `highest`: smallest and
+/// largest count of each pixel. If only one count occurs despite the noise, the step is the distance to the next count.
 [[nodiscard]] GreySteps grey_steps(const cv::Mat1w& lowest, const cv::Mat1w& highest, double noise_levels);
 
-/// Variance of the mean of many rounded values, in squared steps, over all places of the true value between two steps:
-/// sum over k of exp(-4 pi^2 k^2 s^2) / (2 pi^2 k^2), s the standard deviation of normal noise in steps; 1/12 without
-/// noise (Widrow and Kollar 2008, Quantization Noise, 4.3).
+/// Returns the variance of the mean of many rounded values, in squared steps, averaged over all positions of the true
+/// value between two steps: sum over k of exp(-4 pi^2 k^2 s^2) / (2 pi^2 k^2), where s is the standard deviation of
+/// normal noise in steps. It is 1/12 without noise (Widrow and Kollar 2008, Quantization Noise, 4.3).
 [[nodiscard]] double rounding_variance(double noise_steps);
 
 /// Contrast of the large triangles of one frame, in grey levels.
 struct GreyContrast {
   double levels = 0;                ///< mean over the triangles
-  double standard_uncertainty = 0;  ///< from their scatter and from rounding, which all triangles share
+  double standard_uncertainty = 0;  ///< from the scatter over the triangles and from rounding, which all triangles
+                                    ///< share
   double degrees_of_freedom = 1;    ///< Welch and Satterthwaite
   int triangles = 0;
-  /// Half of the 95 % interval.
+  /// Returns half of the 95 % interval.
   [[nodiscard]] double half_width() const;
 };
 
@@ -73,11 +74,11 @@ struct GreyFrame {
   std::string plate;
   Mounting mounting = Mounting::identity;
   double set_delta_t_k = 0;
-  double delta_t_k = 0;     ///< of the target
+  double delta_t_k = 0;     ///< reported by the target
   std::uint64_t frame = 0;  ///< sequence number
   GreyContrast contrast;
   double levels_per_k = 0;  ///< signal transfer of this frame, corrected for the blur of the large triangles
-  double noise_steps = 0;   ///< of a pixel, in steps of the occurring grey levels
+  double noise_steps = 0;   ///< noise of a pixel, in steps of the occurring grey levels
   [[nodiscard]] double relative_uncertainty() const {
     return contrast.standard_uncertainty / std::abs(contrast.levels);
   }

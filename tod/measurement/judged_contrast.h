@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contrast and noise of pictures that processing stages made of a camera's frames. Stages may change the scale; an
-// observer judges relative to the contrast, so the contrast of the judged picture decides, not that of the camera.
+// Contrast and noise of pictures that processing stages computed from a camera's frames. Stages may change the scale.
+// An observer judges relative to the contrast, so the contrast of the judged picture is decisive, not the contrast of
+// the camera's frames.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -18,49 +19,50 @@
 
 namespace todbench {
 
-/// Scale of the judged pictures of one set-up and contrast, relative to that of the camera.
+/// Scale of the judged pictures of one set-up and contrast, relative to the scale of the camera.
 struct JudgedScale {
-  double gain = 1;          ///< contrast of the large triangles over that in the camera's frames; negative: inverted
+  double gain = 1;  ///< contrast of the large triangles divided by that in the camera's frames; negative: inverted
   double gain_error = 0;    ///< standard error, from the scatter over the triangles
   double camera_level = 0;  ///< contrast of the large triangles in the camera's frames, on its scale
-  double noise_ratio = 1;   ///< noise of a judged frame over that of a camera's frame, each on its own scale
-  bool changes = false;     ///< the gain changes from frame to frame and is measured for each
+  double noise_ratio = 1;   ///< noise of a judged frame divided by that of a camera's frame, each on its own scale
+  bool changes = false;     ///< the gain changes from frame to frame and is measured in each frame
   GreySteps steps{};        ///< of the judged counts
 };
-/// Record of a set-up and contrast.
+/// Record of one set-up and contrast.
 struct JudgedContrast {
   std::string plate;
   Mounting mounting = Mounting::identity;
   double set_delta_t_k = 0;
-  double delta_t_k = 0;         ///< before the stages, as reported
+  double delta_t_k = 0;         ///< before the stages, reported by the target
   double judged_delta_t_k = 0;  ///< after the stages, on the camera's scale
-  double noise_k = 0;           ///< as passed to the observer, referred to the contrast before the stages
+  double noise_k = 0;           ///< value passed to the observer, referred to the contrast before the stages
   JudgedScale scale{};
 };
 
-/// Whether any stage changed the frame.
+/// Returns whether any stage changed the frame.
 [[nodiscard]] bool behind_stages(const Frame& frame);
 
-/// Contrast of the large triangles of one judged frame by means, on the scale of its counts. If the judged picture is
-/// finer than the camera's, only every samples_per_pixel-th sample is used. Errors: those of effective_contrast() and
-/// of the scale.
+/// Returns the contrast of the large triangles in one judged frame, by means, on the scale of its counts. If the judged
+/// picture is finer than the camera's, only every samples_per_pixel-th sample is used. Errors: those of
+/// effective_contrast() and of the scale.
 [[nodiscard]] Result<EffectiveContrast> judged_levels(const Frame& frame, const TargetPlate& mounted_plate,
                                                       const Registration& registration, double min_size_px);
 
-/// Memory of the noise after the stages relative to that of the camera, from successive frames of one scene.
+/// Memory of the noise after the stages relative to the memory of the camera's noise, from successive frames of one
+/// scene.
 class JudgedMemory {
  public:
   explicit JudgedMemory(int frames) : camera_(frames, FrameGain::changing), judged_(frames, FrameGain::changing) {}
-  /// Ignores frames without a judged picture and frames that are the camera's own.
+  /// Adds a frame. Ignores frames without a judged picture and frames that no stage changed.
   void add(const Frame& frame);
-  /// LagDifferences::memory() of the judged frames over that of the camera's; 1 without stages.
+  /// Returns LagDifferences::memory() of the judged frames divided by that of the camera's frames; 1 without stages.
   [[nodiscard]] double ratio() const;
 
  private:
   LagDifferences camera_, judged_;
 };
 
-/// Collects the frames from which the contrast of a set-up is measured. The arguments must outlive it.
+/// Collects the frames in which the contrast of a set-up is measured. The arguments must outlive it.
 class JudgedFrames {
  public:
   JudgedFrames(const TargetPlate& mounted_plate, const Registration& registration, double min_size_px, int frames)
@@ -75,7 +77,7 @@ class JudgedFrames {
   /// those of judged_levels(); `not_identifiable` (the judged pictures do not show the large triangles).
   [[nodiscard]] Result<std::optional<JudgedScale>> scale(double memory_ratio) const;
   /// Average of the judged frames, on the camera's scale, and the registration in it. Empty without stages, or if the
-  /// stages' pictures are finer.
+  /// judged pictures are finer than the camera's.
   struct Average {
     AveragedPicture picture;
     Registration registration;
@@ -98,13 +100,13 @@ class JudgedFrames {
   std::optional<Error> error_;
 };
 
-/// Returns the gain of one frame, for stages whose gain changes from frame to frame. Errors: `not_identifiable` if it
-/// is less than three standard errors from 0.
+/// Returns the gain of one frame, for stages whose gain changes from frame to frame. Error: `not_identifiable` if the
+/// gain is less than three standard errors from 0.
 [[nodiscard]] Result<double> judged_gain(const Frame& frame, const TargetPlate& mounted_plate,
                                          const Registration& registration, double min_size_px,
                                          const JudgedScale& scale);
 
-/// Number of judged samples of the window that were clipped at an end of the counts.
+/// Returns the number of judged samples of the window that were clipped at an end of the counts.
 [[nodiscard]] int cut_off_samples(const Frame& frame, const cv::Rect& window);
 
 }  // namespace todbench

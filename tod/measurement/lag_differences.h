@@ -13,29 +13,29 @@ namespace todbench {
 /// Gain of the frames of one scene.
 enum class FrameGain {
   constant,
-  changing,  ///< gain control: another gain in every frame
+  changing,  ///< gain control: the gain differs between frames
 };
 
-/// Returns `to` minus `from`, two pictures of one scene. With a changing gain, without the part that is proportional to
-/// their mean, by least squares: a frame of another gain differs by a multiple of the scene, which is no noise. The
-/// noise of the result is that at the gain 2 a b / (a + b), a and b the gains of both.
+/// Returns `to` minus `from`, two pictures of one scene. With a changing gain, the part proportional to their mean is
+/// removed by least squares: a frame with another gain differs by a multiple of the scene, which is not noise. The
+/// noise of the result corresponds to the gain 2 a b / (a + b), where a and b are the gains of the two pictures.
 [[nodiscard]] cv::Mat1d difference_of(const cv::Mat1d& from, const cv::Mat1d& to, FrameGain gain);
 
 /// Differences of pictures at three lags: 1, 3/8 and 3/4 of the planned number of frames, without offsets of whole
-/// frames. Keeps a quarter of the frames. One thread at a time.
+/// frames. Stores a quarter of the frames. One thread at a time.
 class LagDifferences {
  public:
   /// `frames`: planned number, at least 2.
   explicit LagDifferences(int frames, FrameGain gain = FrameGain::constant);
-  /// `sequence`: number of the exposure, increasing.
+  /// Adds a picture. `sequence`: number of the exposure, increasing.
   void add(std::uint64_t sequence, const cv::Mat1d& picture);
 
-  /// Half of the mean squared difference of successive frames; 0 if there are none.
+  /// Returns half of the mean squared difference of successive frames; 0 if there are none.
   [[nodiscard]] double successive_variance() const { return successive_.mean(); }
-  /// Variance of a pixel in one frame. Exact for white noise, for noise of first order, and for moving means over at
-  /// most 3/8 of the frames; the successive variance if there are too few frames.
+  /// Returns the variance of a pixel in one frame. It is exact for white noise, for noise of first order, and for
+  /// moving means over at most 3/8 of the frames. With too few frames it is the successive variance.
   [[nodiscard]] double variance() const;
-  /// variance() over successive_variance(): above 1 for noise with memory; 1 without noise.
+  /// Returns variance() / successive_variance(): above 1 for noise with memory; 1 without noise.
   [[nodiscard]] double memory() const;
 
  private:

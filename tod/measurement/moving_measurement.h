@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measurement of a plate that a stage moves: passes of several frames, each triangle judged at its place.
+// Measurement of a plate that a stage moves: passes of several frames, in which each triangle is judged at its place.
 #pragma once
 
 #include <array>
@@ -21,22 +21,22 @@ struct MovingMeasurementOptions {
   /// Options as for a plate at rest; schedule, answers and corrections are ignored.
   MeasurementOptions measurement;
   std::vector<Mounting> mountings;
-  /// For each plate of `measurement`, the number of `mountings` that show it, counted from the first one; empty: all of
-  /// them.
+  /// For each plate of `measurement`, the number of `mountings` in which it is shown, counted from the first one;
+  /// empty: all.
   std::vector<std::size_t> mountings_per_plate{};
-  std::vector<double> delta_t_k;      ///< not 0; the plate is registered at the largest
+  std::vector<double> delta_t_k;      ///< not 0; the plate is located at the largest
   std::vector<double> speeds_mrad_s;  ///< 0 or more
   int passes = 4;  ///< passes of each plate, mounting, contrast and speed, alternately to the right and left
   int frames = 8;  ///< successive frames of a pass that are judged
-  /// Frames of motion before the first judged one, until the detector no longer shows the plate at rest.
+  /// Frames of motion before the first judged frame; after them the detector no longer shows the plate at rest.
   int lead_frames = 5;
   PlaceSource places = PlaceSource::triangles;
 };
 
-/// One pass. Passes are the clusters of answers.
+/// One pass. The answers of a pass are one cluster.
 struct MovingPassRecord {
-  int pass = 0;  ///< over the whole measurement
-  /// Number of the sampling phase, counted over plates, mountings and contrasts: the same at every speed.
+  int pass = 0;  ///< index in the whole measurement
+  /// Index of the sampling phase, counted over plates, mountings and contrasts. It is the same at every speed.
   int pair = 0;
   std::string plate;
   Mounting mounting = Mounting::identity;
@@ -44,9 +44,9 @@ struct MovingPassRecord {
   double speed_mrad_s = 0;   ///< requested
   double along_x = 1;        ///< +1: to the right
   double said_px_s = 0;      ///< speed reported by the stage, converted by the registration
-  double measured_px_s = 0;  ///< slope of the places of the large triangles over device time
-  double residual_px = 0;    ///< rms of those places from the line at the stage's speed, per axis
-  /// Delay of the plate in the picture, by the centre of mass of the large triangles; empty: at rest, no trigger, or
+  double measured_px_s = 0;  ///< slope of the places of the large triangles as a function of device time
+  double residual_px = 0;    ///< rms deviation of those places from the line at the stage's speed, per axis
+  /// Delay of the plate in the picture, from the centre of mass of the large triangles; empty: at rest, no trigger, or
   /// not the largest contrast.
   std::optional<double> lag_s;
   int left_out = 0;     ///< triangles whose window leaves the picture
@@ -71,32 +71,32 @@ struct MovingMeasurement {
   double temporal_noise_k = 0;  ///< per pixel and frame
   std::map<std::string, std::uint64_t> frames_rejected;
   std::uint64_t frames_lost = 0, frames_used = 0;
-  std::optional<Error> ended_by;            ///< reason of an early end; passes and answers so far are valid
-  std::vector<std::string> notes;           ///< includes those of a plate at rest: target, contrasts, saturation
-  std::vector<Presentation> presentations;  ///< of the contrasts at rest, in the order of the run
-  RunConstancy constancy{};                 ///< of the averages of a plate at rest
+  std::optional<Error> ended_by;            ///< reason for an early end; passes and answers so far are valid
+  std::vector<std::string> notes;           ///< includes the notes of a plate at rest: target, contrasts, saturation
+  std::vector<Presentation> presentations;  ///< presentations of the contrasts at rest, in the order of the run
+  RunConstancy constancy{};                 ///< from the averages of a plate at rest
 };
 
-/// Events of a run, on the measuring thread. Every function may be empty. An error returned by one ends the run with
-/// this error.
+/// Events of a run, on the measuring thread. Every function may be empty. If a function returns an error, the run ends
+/// with this error.
 struct MovingListener {
   /// Called when the plate is at rest and its contrast is known, before the passes of this contrast.
   std::function<Result<void>(const Presentation&)> on_presentation{};
-  std::function<Result<void>(const MovingAnswer&)> on_answer{};  ///< one by one, in the order of the result
-  std::function<void(const MovingPassRecord&)> on_pass{};        ///< after its answers
+  std::function<Result<void>(const MovingAnswer&)> on_answer{};  ///< called for each answer, in the order of the result
+  std::function<void(const MovingPassRecord&)> on_pass{};        ///< called after the answers of the pass
 };
 
-/// Checks of measure_moving() before it starts the camera. Errors: `invalid_input` (a target that cannot move, speeds
-/// above 5 pixels a frame, displayed samples finer than the detectors, contrasts in grey levels, sizes that do not
-/// fit), `calibration` (no temperature scale).
+/// Checks the input of measure_moving() before the camera starts. Errors: `invalid_input` (a target that cannot move,
+/// speeds above 5 pixels a frame, displayed samples finer than the detectors, contrasts in grey levels, sizes that do
+/// not fit), `calibration` (no temperature scale).
 [[nodiscard]] Result<void> check_moving(const SourceInfo& camera, Target& target, TemplateObserver& observer,
                                         const MovingMeasurementOptions& options);
 
-/// Measures a moving plate. Set-ups are prepared and checked as by measure(). A pass with lost frames or without a
-/// located plate is dropped, and its record states why; if at least four passes and at least a third are dropped, the
-/// run ends with `integrity`. A run that ended early after its first answers returns them with `ended_by`. Errors:
-/// `invalid_input` (a target that cannot move, speeds above 5 pixels a frame, a run longer than the travel of the
-/// stage, displayed samples finer than the detectors), those of measure().
+/// Measures a moving plate. Set-ups are prepared and checked as in measure(). A pass with lost frames or without a
+/// located plate is dropped, and its record states the reason. If at least four passes and at least a third of them are
+/// dropped, the run ends with `integrity`. A run that ended early after its first answers returns them with `ended_by`.
+/// Errors: `invalid_input` (a target that cannot move, speeds above 5 pixels a frame, a run longer than the travel of
+/// the stage, displayed samples finer than the detectors), those of measure().
 [[nodiscard]] Result<MovingMeasurement> measure_moving(FrameSource& source, Target& target, TemplateObserver& observer,
                                                        const MovingMeasurementOptions& options, RunController& host,
                                                        const MovingListener& listener, std::stop_token stop);

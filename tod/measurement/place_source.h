@@ -10,7 +10,7 @@ namespace todbench {
 /// Source of the place of the plate in a frame of a pass.
 enum class PlaceSource {
   triangles,  ///< place of the large triangles of that frame
-  stage,      ///< a straight line over device time at the stage's speed, through the mean place of the large triangles
+  stage,      ///< a straight line in device time at the stage's speed, through the mean place of the large triangles
 };
 inline constexpr std::array all_place_sources{PlaceSource::triangles, PlaceSource::stage};
 [[nodiscard]] constexpr std::string_view to_string(PlaceSource source) {

@@ -12,15 +12,15 @@ namespace todbench {
 
 /// A plate with its observers.
 struct PreparedPlate {
-  TargetPlate plate;                                               ///< identity mounting
+  TargetPlate plate;                                               ///< in identity mounting
   std::vector<std::shared_ptr<const PreparedObserver>> observers;  ///< per triangle; empty until the scale is known
   std::vector<double> size_px;                                     ///< per triangle
-  /// Sides of the windows of its triangles, in samples.
+  /// Returns the sides of the windows of its triangles, in samples.
   [[nodiscard]] std::vector<int> sides() const;
 };
 
-/// Prepares the observer for the sizes that the triangles have at this scale. Errors: those of the observer, with plate
-/// and triangle.
+/// Prepares the observer for the sizes of the triangles at this scale. Errors: those of the observer, with plate and
+/// triangle.
 [[nodiscard]] Result<void> prepare(PreparedPlate& plate, Observer& observer, double scale_px_per_mm,
                                    int samples_per_pitch);
 

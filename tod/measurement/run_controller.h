@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interface of the code that controls a measurement: clock, pauses, recovery of a lost camera. Code that only listens
-// is a MeasurementListener.
+// Interface of the code that controls a measurement: clock, pauses, recovery of a lost camera. Code that only observes
+// it is a MeasurementListener.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@
 
 namespace todbench {
 
-/// Reason for which a measurement reads the clock.
+/// Reason why a measurement reads the clock.
 enum class Moment {
-  correction_due,  ///< whether a non-uniformity correction is due
+  correction_due,  ///< to decide whether a non-uniformity correction is due
   corrected,       ///< the camera has carried out the command to correct
-  scene_changed,   ///< the target is in place; frames from now on show it
+  scene_changed,   ///< the target is in place; later frames show it
   camera_lost,     ///< the camera failed
   camera_back,     ///< the presentation in which the camera failed was repeated
 };
@@ -29,37 +29,37 @@ inline constexpr std::array all_moments{Moment::correction_due, Moment::correcte
 enum class FramesWhilePresenting {
   leave,  ///< not requested: for a camera that exposes only on request
   take,   ///< taken on a separate thread, so that queues stay short and every correction is detected
-  repeat  ///< RunController::asked_while_presenting() returns how many are requested: for a replay
+  repeat  ///< RunController::asked_while_presenting() returns the number of requests: for a replay
 };
 
-/// External inputs of a run: clock, pauses, frame requests and recovery of a lost camera. The returned values decide
-/// which trials are made: a recording stores all of them, and a replay returns the same ones. Called from the measuring
-/// thread, in the order of the measurement. An error of any function ends the run with this error. Must outlive the
-/// run.
+/// External inputs of a run: clock, pauses, frame requests and recovery of a lost camera. The returned values determine
+/// which trials are made; a recording therefore stores all of them, and a replay returns the same values. Called from
+/// the measuring thread, in the order of the measurement. If a function returns an error, the run ends with this error.
+/// Must outlive the run.
 class RunController {
  public:
   virtual ~RunController() = default;
-  /// The clock of Frame::host_time_ns, now.
+  /// Returns the present time on the clock of Frame::host_time_ns.
   [[nodiscard]] virtual Result<std::int64_t> now_ns(Moment why) = 0;
-  /// Whether the run is paused. Called before every presentation, and again while it returns true. May block for a
-  /// tenth of a second, less if `stop` is requested.
+  /// Returns whether the run is paused. Called before every presentation, and again while it returns true. May block
+  /// for 0.1 s, or less if `stop` is requested.
   [[nodiscard]] virtual Result<bool> rests(std::stop_token stop) = 0;
-  /// Constant during a run.
+  /// Returns a value that is constant during a run.
   [[nodiscard]] virtual FramesWhilePresenting frames_while_presenting() const = 0;
-  /// Called after the target has presented a state, with the number of frames requested meanwhile (0 in a replay).
-  /// Returns this number; in a replay, the recorded one. Not called for FramesWhilePresenting::leave.
+  /// Called after the target has presented a state, with the number of frames requested in the meantime (0 in a
+  /// replay). Returns this number; in a replay, the recorded number. Not called for FramesWhilePresenting::leave.
   [[nodiscard]] virtual Result<std::int64_t> asked_while_presenting(std::int64_t calls) = 0;
-  /// Whether recover() may succeed. False: a lost camera ends the run, and recover() is not called.
+  /// Returns whether recover() may succeed. If false, a lost camera ends the run, and recover() is not called.
   [[nodiscard]] virtual bool recovers() const = 0;
-  /// Called when the camera was lost. Success: the same source delivers frames again, started and set as before; the
-  /// plate is then located again and the presentation repeated. Errors: `disconnected` (the camera stays away),
-  /// `interrupted`.
+  /// Called when the camera was lost. After success the same source delivers frames again, started and configured as
+  /// before; the plate is then located again and the presentation repeated. Errors: `disconnected` (the camera does not
+  /// return), `interrupted`.
   [[nodiscard]] virtual Result<void> recover(std::stop_token stop) = 0;
-  /// Called when the plate was found again after a loss and the presentation was repeated.
+  /// Called when the plate was located again after a loss and the presentation was repeated.
   virtual void resumed() = 0;
 };
 
-/// Host of a run without pauses and without recovery of the camera: a simulation.
+/// Host of a run without pauses and without recovery of the camera, such as a simulation.
 class UnattendedHost final : public RunController {
  public:
   [[nodiscard]] Result<std::int64_t> now_ns(Moment) override { return monotonic_ns(); }

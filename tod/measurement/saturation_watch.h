@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Detection of clipped pixels: a target that is too hot or too cold for the camera.
+// Detects clipped pixels: the target is too hot or too cold for the camera.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -14,16 +14,16 @@ namespace todbench {
 /// time.
 class SaturationWatch {
  public:
-  /// Learns from the average of a set-up with the observed contrast `contrast_k`. Returns the number of pixels of the
-  /// triangles that were at an end in some of its frames, without the defective ones.
+  /// Learns from the average of a set-up with the observed contrast `contrast_k`. Returns the number of triangle pixels
+  /// that were at an end in at least one frame, without the defective pixels.
   ///
-  /// The ends are 0 and full scale of the significant bits, or a count at which several pixels stayed in every frame
-  /// while noise moved the others and none went beyond: the end of a temperature range, or of fewer bits than the
-  /// format has. A pixel that was there in every frame is defective if it is outside the triangles, or if the triangles
-  /// are far from that end; it is ignored until it changes.
+  /// The ends are 0 and full scale of the significant bits. A count is also an end if several pixels stayed at it in
+  /// every frame, while noise changed the others and no pixel exceeded it; this is the end of a temperature range, or
+  /// of fewer bits than the format has. A pixel that was at an end in every frame is defective if it is outside the
+  /// triangles, or if the triangles are far from that end. It is ignored until it changes.
   [[nodiscard]] int learn(const AveragedPicture& picture, const RadiometricScale& scale,
                           const TargetPlate& mounted_plate, const Registration& registration, double contrast_k);
-  /// Number of pixels of the window at an end of the counts, without the defective ones.
+  /// Returns the number of pixels of the window at an end of the counts, without the defective ones.
   [[nodiscard]] int saturated_pixels(const Frame& frame, const cv::Rect& window) const;
 
  private:
@@ -35,8 +35,8 @@ class SaturationWatch {
   cv::Mat1b defective_;  ///< empty: not yet learnt
 };
 
-/// Whether more than one in a thousand pixels stay at an end of the counts in every frame. The ends are those of
-/// SaturationWatch::learn().
+/// Returns whether more than one in a thousand pixels stay at an end of the counts in every frame. The ends are those
+/// of SaturationWatch::learn().
 [[nodiscard]] bool saturated(const AveragedPicture& picture);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Observers of a moving target: decisions from several frames of one pass.
+// Observers of a moving target, which decide from several frames of one pass.
 #pragma once
 
 #include <array>
@@ -17,10 +17,10 @@ namespace todbench {
 /// Use of the frames of a pass by an observer.
 enum class SequenceObserver {
   single_frame,  ///< judges the first frame only
-  tracking_sum,  ///< adds the scores of all frames, each at the true place of the target: pursuit, an upper bound
+  tracking_sum,  ///< adds the scores of all frames, each at the target's true place: pursuit, an upper bound
   static_sum,    ///< averages all frames at the target's place in the middle of the pass: persistence without pursuit
-  /// Judges one picture on a grid twice as fine, which joins all frames by the place of the target in each: dynamic
-  /// super-resolution of a known motion (super_resolve()).
+  /// Combines all frames by the place of the target in each into one picture on a grid twice as fine, and judges it:
+  /// dynamic super-resolution of a known motion (super_resolve()).
   super_resolution,
 };
 inline constexpr std::array all_sequence_observers{SequenceObserver::single_frame, SequenceObserver::tracking_sum,
@@ -29,32 +29,32 @@ inline constexpr std::array all_sequence_observers{SequenceObserver::single_fram
 
 /// One triangle in the frames of a pass.
 struct SeenSequence {
-  std::span<const cv::Mat1f> frames;  ///< kelvin; whole frames, at least one
-  std::vector<cv::Point2d> places;    ///< places of its centroid in each frame, pixel centres at integers
+  std::span<const cv::Mat1f> frames;  ///< whole frames in kelvin, at least one
+  std::vector<cv::Point2d> places;    ///< positions of its centroid in each frame, pixel centres at integers
   double contrast_k = 0;
-  double noise_k = 0;  ///< of the sensor in one frame
+  double noise_k = 0;  ///< noise of the sensor in one frame
 };
 
-/// Judges triangles of several sizes. Internal noise is drawn once for each decision, whatever the number of frames.
-/// One thread at a time.
+/// Judges triangles of several sizes. Internal noise is drawn once for each decision, independent of the number of
+/// frames. One thread at a time.
 class SequenceJudge {
  public:
-  /// `sizes` in samples. Errors: those of the observer.
+  /// Prepares the observers. `sizes` in samples. Errors: those of the observer.
   [[nodiscard]] static Result<SequenceJudge> prepare(TemplateObserver& observer, std::span<const double> sizes);
 
   [[nodiscard]] std::size_t sizes() const { return sizes_.size(); }
-  /// Side in samples of a window that is large enough for every observer at this size, search included.
+  /// Returns the side, in samples, of a window that is large enough for every observer at this size, search included.
   [[nodiscard]] int window_samples(std::size_t size) const;
-  /// Returns the chosen alternative. Precondition: the windows round all places are in the frames.
+  /// Returns the chosen alternative. Precondition: the windows round all positions are inside the frames.
   [[nodiscard]] int choose(SequenceObserver kind, std::size_t size, const SeenSequence& seen,
                            const RandomStream& noise) const;
 
  private:
-  /// Observer and bank of one size. The bank reaches half a sample further than the observer searches, so that the
-  /// search can be centred on any true place between two samples.
+  /// Observer and bank of one size. The bank extends half a sample further than the observer's search, so that the
+  /// search can be centred on any true position between two samples.
   struct PreparedSize {
     std::shared_ptr<const PreparedObserver> observer;
-    std::shared_ptr<const PreparedObserver> finer;  ///< of a picture on the grid twice as fine
+    std::shared_ptr<const PreparedObserver> finer;  ///< for a picture on the grid twice as fine
     std::shared_ptr<const TemplateBank> bank;
   };
   [[nodiscard]] int tracked(const PreparedSize& size, const SeenSequence& seen, const RandomStream& noise) const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Change of the target while the camera continues.
+// Change of the target while the camera continues to send frames.
 #pragma once
 
 #include <stop_token>
@@ -10,18 +10,17 @@
 
 namespace todbench {
 
-/// Outcome of a change of the target, for target and frames.
+/// Outcome of a change of the target, for the target and for the frames.
 struct TargetChange {
   Result<PresentedTarget> presented;
-  Result<void> frames;  ///< frames taken meanwhile, if any
-  /// The camera failed first, and the wait for the target was cancelled: the target's error is then not a failure of
-  /// its own.
+  Result<void> frames;  ///< result for the frames taken in the meantime, if any
+  /// The camera failed first, and the wait for the target was cancelled. The target's error is then only a consequence.
   bool given_up = false;
 };
 
-/// Presents a state and handles the frames sent meanwhile as RunController::frames_while_presenting() states. If they
-/// are taken, a second thread takes them, and a camera failure ends the wait for the target: a black body may need
-/// minutes, and the state has to be presented again anyway. Errors: only those of the host.
+/// Presents a state and handles the frames sent in the meantime as RunController::frames_while_presenting() states. If
+/// they are taken, a second thread takes them. A camera failure then ends the wait for the target, because a black body
+/// may need minutes and the state has to be presented again anyway. Errors: only those of the host.
 [[nodiscard]] Result<TargetChange> change_target(Target& target, FrameTaker& taker, RunController& host,
                                                  const TargetState& state, std::stop_token stop);
 

@@ -17,7 +17,7 @@
 
 namespace todbench {
 
-/// Input of TrialJudge::answers(). References are used during the call only.
+/// Input of TrialJudge::answers(). References are used only during the call.
 struct PresentationShown {
   const PreparedPlate& plate;
   const TargetPlate& mounted_plate;
@@ -26,28 +26,29 @@ struct PresentationShown {
   double point_delta_t_k = 0;  ///< set contrast of the point of the curve
   const SeenContrast& seen;
   std::int64_t presentation = 0;
-  std::span<const Frame> first_frames;  ///< already taken; the others are taken from the camera
+  std::span<const Frame> first_frames;  ///< frames already taken; the remaining ones are taken from the camera
   int frames = 1;                       ///< total number of frames
 };
 
 /// Answers to one presentation.
 struct PresentationAnswers {
   std::vector<Trial> trials;     ///< one per triangle of the plate
-  std::vector<Patch> patches;    ///< of the first frame, one per trial
+  std::vector<Patch> patches;    ///< windows in the first frame, one per trial
   std::vector<GreyFrame> greys;  ///< one per frame if contrasts are in grey levels
 };
 
-/// Lets an observer judge the triangles of a presentation. One thread at a time. The arguments must outlive it.
+/// Obtains an observer's answers to the triangles of a presentation. One thread at a time. The arguments must outlive
+/// it.
 class TrialJudge {
  public:
   TrialJudge(const MeasurementOptions& options, Observer& observer, FrameTaker& taker, SetUpStep& step)
       : options_(options), observer_(observer), taker_(taker), step_(step) {}
 
   /// Returns the answers to all triangles. Errors: those of the camera; `calibration` (a window leaves the picture);
-  /// `internal` (frames with a sampling that the options do not state); those of the observer.
+  /// `internal` (frames whose sampling differs from the options); those of the observer.
   [[nodiscard]] Result<PresentationAnswers> answers(const PresentationShown& shown, const std::stop_token& stop);
 
-  /// Returns the side of a window in camera pixels, for a side in samples of the judged picture: the next even number.
+  /// Returns the side of a window in camera pixels for a side in samples of the judged picture: the next even number.
   [[nodiscard]] int in_pixels(int side) const;
 
  private:
