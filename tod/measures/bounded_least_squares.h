@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Least squares with a bound on either side of every unknown.
+// Least squares with a lower and an upper bound of every unknown.
 #pragma once
 
 #include <cstddef>
@@ -7,28 +7,30 @@
 
 namespace todbench {
 
-/// Minimises q(x) = x'Gx - 2 r'x with low <= x <= high. G is positive semidefinite: the Gram matrix of a design divided
-/// by the variance of a sample, so that q is chi-square up to a constant. Columns are scaled to one length, and a ridge
-/// of 1e-13 of it makes the solution unique if columns are dependent.
+/// Minimises q(x) = x'Gx - 2 r'x with low <= x <= high. G is positive semidefinite: it is the Gram matrix of a design
+/// divided by the variance of a sample, so that q is chi-square up to a constant. Columns are scaled to equal length. A
+/// ridge of 1e-13 of this length makes the solution unique if columns are dependent.
 ///
-/// Active-set method (Stark and Parker 1995): finite, exact to rounding. 36 unknowns take about 50 us without a start.
+/// Active-set method (Stark and Parker 1995): finite, exact to rounding. 36 unknowns take about 50 us without a
+/// starting point.
 class BoundedLeastSquares {
  public:
-  /// `gram` by rows. Precondition: low <= high, all sizes fit, no NaN. Bounds may be infinite.
+  /// Solves the problem. `gram` is stored by rows. Precondition: low <= high, matching sizes, no NaN. Bounds may be
+  /// infinite.
   BoundedLeastSquares(const std::vector<double>& gram, const std::vector<double>& right, const std::vector<double>& low,
                       const std::vector<double>& high);
 
-  /// The minimum.
+  /// Returns the the minimum.
   [[nodiscard]] const std::vector<double>& best() const { return best_.x; }
-  /// q(x) - q(best), at least 0.
+  /// Returns q(x) - q(best), at least 0.
   [[nodiscard]] double excess(const std::vector<double>& x) const;
-  /// The x with the largest direction'x among all with an excess of at most `allowed`.
+  /// Returns the x with the largest direction'x among all with an excess of at most `allowed`.
   [[nodiscard]] std::vector<double> farthest(const std::vector<double>& direction, double allowed) const;
 
  private:
   struct State {
     std::vector<double> x;
-    std::vector<signed char> bound;  ///< -1 at the low, 1 at the high bound, 0 free
+    std::vector<signed char> bound;  ///< -1 at the lower bound, 1 at the upper bound, 0 free
   };
   [[nodiscard]] State solve(const std::vector<double>& right, State from) const;
   [[nodiscard]] std::vector<double> free_minimum(const std::vector<double>& right, const State& state,
@@ -37,7 +39,7 @@ class BoundedLeastSquares {
   [[nodiscard]] std::vector<double> unscaled(std::vector<double> x) const;
 
   std::size_t n_;
-  std::vector<double> scale_, gram_, right_, low_, high_;  ///< of scaled unknowns, x / scale
+  std::vector<double> scale_, gram_, right_, low_, high_;  ///< of the scaled unknowns, x / scale
   State scaled_best_, best_;
   std::vector<double> slope_at_best_;  ///< half the gradient of q
 };

@@ -15,12 +15,12 @@ namespace todbench {
 
 /// Successive frames of a flat field, averaged.
 struct DriftGroup {
-  double time_s = 0;  ///< mean, since the correction
+  double time_s = 0;  ///< mean time since the correction
   int frames = 0;
   cv::Mat1d mean_k;
 };
 
-/// Growth with time.
+/// Form of the growth with time.
 enum class DriftShape {
   linear,    ///< t
   approach,  ///< 1 - exp(-t / T)
@@ -30,10 +30,10 @@ enum class DriftShape {
 /// One quantity over time.
 struct DriftFit {
   DriftShape shape = DriftShape::linear;
-  double change_k = 0;                    ///< from the first group to the last, by the fit
+  double change_k = 0;                    ///< from the first group to the last, according to the fit
   Interval change_ci95{};                 ///< in kelvin
   std::optional<double> time_constant_s;  ///< of an approach
-  Interval time_constant_ci95{};          ///< a side that the data do not determine is open
+  Interval time_constant_ci95{};          ///< the interval is open on a side that the data do not determine
   double p_linear = 1;                    ///< p value of a straight line against an approach (F test)
   std::vector<double> seen_k, fitted_k;   ///< by group
 };
@@ -41,26 +41,26 @@ struct DriftFit {
 /// Drift of a camera: growth after a correction.
 struct DriftLaw {
   std::vector<double> time_s;  ///< of the groups
-  /// Mean of the picture. Its interval includes the deviation from 0 that the mean of as many draws of the pattern as
-  /// the picture has pixels shows by chance.
+  /// Mean of the picture. Its interval includes a chance deviation from 0: that of the mean of as many draws of the
+  /// pattern as the picture has pixels.
   DriftFit level;
   /// Standard deviation over the pixels of their change since the first group, without white noise, mean and shading of
   /// second order. Its change is never negative; an interval that begins at 0 does not prove a change.
   DriftFit pattern;
 
-  /// A change in kelvin per minute, over the time from the first group to the last.
+  /// Returns a change in kelvin per minute, averaged over the time from the first group to the last.
   [[nodiscard]] double per_minute(double change_k) const;
 };
 
-/// Fewest groups of drift_law().
+/// Minimum number of groups of drift_law().
 inline constexpr std::size_t least_drift_groups = 8;
 
-/// Fits both quantities over time, with groups weighted by their frames. The level is fitted by least squares, the
-/// pattern by analysis of variance of the pixels' regressions on time, with modified large-sample intervals (Graybill
-/// and Wang 1980). An approach, with the time constant of least squares, replaces a straight line whose residuals
-/// exceed chance (F test at 1 %; for the pattern, F is reduced by the gain that a search for a time constant finds in
-/// the noise of many pixels). Errors: `invalid_input` (fewer than eight groups, groups without frames, times that do
-/// not rise, pictures below 4 x 4 pixels or of different sizes).
+/// Fits both quantities over time, with groups weighted by their frames. The level is fitted by least squares. The
+/// pattern is fitted by analysis of variance of the pixels' regressions on time, with modified large-sample intervals
+/// (Graybill and Wang 1980). If the residuals of a straight line exceed chance, it is replaced by an approach with the
+/// least-squares time constant (F test at 1 %). For the pattern, F is reduced by the gain that a search for a time
+/// constant finds in the noise of many pixels. Errors: `invalid_input` (fewer than eight groups, groups without frames,
+/// times that do not increase, pictures below 4 x 4 pixels or of different sizes).
 [[nodiscard]] Result<DriftLaw> drift_law(std::span<const DriftGroup> groups);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Test for clipping of the two levels of an edge.
+// Tests whether one of the two levels of an edge is clipped.
 #pragma once
 
 #include <optional>
@@ -10,16 +10,16 @@
 
 namespace todbench {
 
-/// Properties of an edge before the test.
+/// Properties of an edge, determined before the test.
 struct EdgeLevels {
   double dark = 0, bright = 0;
-  double width_pitch = 0;  ///< from 10 to 90 % of the step
+  double width_pitch = 0;  ///< distance from 10 to 90 % of the step
   double steepest = 0;     ///< largest slope of the profile per pitch
-  double count_step = 0;   ///< 1 for a picture of whole counts, else 0
+  double count_step = 0;   ///< 1 for a picture of integer counts, otherwise 0
 };
 
-/// Returns the clipped side ("bright", "dark"), if any: a plateau that stays on one value next to values that scatter,
-/// or a profile that meets its plateau with a corner.
+/// Returns the clipped side ("bright", "dark"), if any. A side is clipped if its plateau has a single value next to
+/// values that scatter, or if the profile meets the plateau at a corner.
 [[nodiscard]] std::optional<std::string_view> clipped_side(const std::vector<EdgeSample>& samples,
                                                            const EdgeLevels& levels);
 

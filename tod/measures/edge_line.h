@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// x = middle + slope (row - middle row), in pixels.
+/// The line x = middle + slope (row - middle row), in pixels.
 struct EdgeLine {
   double middle = 0, slope = 0;
   double middle_row = 0;
@@ -25,25 +25,25 @@ struct EdgeSample {
   int row = 0;
 };
 
-/// First estimate of the line of an edge whose bright side is right: the place in each row follows from the row's sum.
-/// Errors: `invalid_input` (no step between the picture's sides).
+/// Returns a first estimate of the line of an edge whose bright side is on the right. The position in each row follows
+/// from the sum of the row. Error: `invalid_input` (no step between the picture's sides).
 [[nodiscard]] Result<EdgeLine> first_line(const cv::Mat1d& picture);
 
-/// Pixels within `reach` pitches of the line.
+/// Returns the pixels within `reach` pitches of the line.
 [[nodiscard]] std::vector<EdgeSample> samples_near(const cv::Mat1d& picture, const EdgeLine& line, double reach);
 
-/// Distance to which the profile extends on both sides in at least three quarters of the rows, at most 32 pitches;
-/// negative if the line leaves the picture.
+/// Returns the distance to which the profile extends on both sides in at least three quarters of the rows, at most 32
+/// pitches; negative if the line leaves the picture.
 [[nodiscard]] double reach_of(const cv::Size& size, const EdgeLine& line);
 
-/// Displacement of each row's edge from the line along the normal, in pitches, positive towards the bright side (least
-/// squares against the profile).
+/// Returns the displacement of each row's edge from the line along the normal, in pitches, positive towards the bright
+/// side (least squares against the profile).
 [[nodiscard]] std::vector<double> row_offsets(const std::vector<EdgeSample>& samples, const Spline& profile, int rows);
 
 /// Parabola through the offsets of the rows: its coefficients, and the standard uncertainty of the sag.
 struct RowTrend {
   double mean = 0, slope = 0;  ///< per row
-  double sag = 0, sag_u = 0;   ///< offset of the ends minus that of the middle, without the slope
+  double sag = 0, sag_u = 0;   ///< offset of the ends minus offset of the middle, without the slope
 };
 /// Fits the parabola by least squares.
 [[nodiscard]] RowTrend trend_of(const std::vector<double>& offsets);

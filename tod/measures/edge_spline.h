@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smooth curve through very many samples of an edge: least squares with cubic B-splines.
+// Smooth curve through a large number of samples of an edge: least squares with cubic B-splines.
 #pragma once
 
 #include <array>
@@ -21,28 +21,28 @@ struct SplineGrid {
 struct Spline {
   SplineGrid grid;
   std::vector<double> coefficients;
-  /// Precondition: t on the grid.
+  /// Returns the value at t. Precondition: t on the grid.
   [[nodiscard]] double value(double t) const;
   [[nodiscard]] double slope(double t) const;
 };
 
-/// Normal equations of a fit. They are sums over samples, so that the sums of a part of the samples can be subtracted
-/// again.
+/// Normal equations of a fit. They are sums over samples, so the sums of a part of the samples can be subtracted later.
 class SplineSums {
  public:
   explicit SplineSums(const SplineGrid& grid);
-  /// Ignores samples outside the grid.
+  /// Adds a sample. Ignores samples outside the grid.
   void add(double t, double value);
   SplineSums& operator+=(const SplineSums& other);
   SplineSums& operator-=(const SplineSums& other);
   [[nodiscard]] double samples() const { return samples_; }
-  /// The least-squares curve. A small cost on third differences bridges stretches without samples; at half a cycle per
-  /// four knots it changes an amplitude by less than 1e-5. Empty if there are fewer samples than coefficients.
+  /// Returns the least-squares curve. A small penalty on third differences bridges intervals without samples. At half a
+  /// cycle per four knots it changes an amplitude by less than 1e-5. Empty if there are fewer samples than
+  /// coefficients.
   [[nodiscard]] std::optional<Spline> solve() const;
 
  private:
   SplineGrid grid_;
-  std::vector<std::array<double, 4>> band_;  ///< the diagonal and the elements right of it
+  std::vector<std::array<double, 4>> band_;  ///< the diagonal and the elements on its right
   std::vector<double> right_;
   double samples_ = 0;
 };

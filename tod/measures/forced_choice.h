@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Threshold of a person from right and wrong answers at contrasts of both polarities, two alternatives each.
+// Threshold of a person from correct and wrong answers at contrasts of both polarities, with two alternatives each.
 #pragma once
 
 #include <map>
@@ -13,39 +13,39 @@ namespace todbench {
 
 /// One answer of a person who chose between two intervals.
 struct ForcedChoice {
-  double contrast_k = 0;  ///< signed, as the target reported it; not 0
-  int set_up = 0;         ///< place of the plate between the pixels
+  double contrast_k = 0;  ///< signed, as reported by the target; not 0
+  int set_up = 0;         ///< position of the plate relative to the pixels
   bool right = false;
 };
 
 /// Threshold of one person for one target.
 struct ForcedChoiceThreshold {
-  std::optional<double> positive_k{}, negative_k{};  ///< contrast for 75 % correct; the negative one is below 0
+  std::optional<double> positive_k{}, negative_k{};  ///< contrast for 75 % correct answers; the negative one is below 0
   std::optional<double> half_k{};                    ///< half of their difference
-  Interval ci95{};                                   ///< of half_k
-  std::map<int, double> half_k_without{};            ///< half_k without the answers of one set-up, by set-up
-  double lapse = 0;                                  ///< share of answers given without regard to the picture
+  Interval ci95{};                                   ///< interval of half_k
+  std::map<int, double> half_k_without{};            ///< half_k if the answers of one set-up are left out, by set-up
+  double lapse = 0;                                  ///< share of answers that do not depend on the picture
   int answers = 0, right = 0;
-  std::string reason{};  ///< of a missing threshold; empty if there is one
+  std::string reason{};  ///< reason for a missing threshold; empty if there is one
 };
 
-/// Variance of ln of a value by jackknife over parts of the data, such as set-ups, from the values without each part.
-/// Precondition: all values above 0.
+/// Returns the variance of ln of a value by jackknife over parts of the data, such as set-ups. `without`: the values
+/// without each part. Precondition: all values above 0.
 [[nodiscard]] double jackknife_variance_of_ln(const std::map<int, double>& without);
 
-/// Fewest answers at each polarity, and fewest set-ups, of a threshold.
+/// Minimum number of answers at each polarity, and minimum number of set-ups, for a threshold.
 inline constexpr int least_choices = 24, least_choice_set_ups = 5;
 
-/// Fits 0.5 l + (1 - l) Phi(0.674 (c / t)^b) to the answers: the function that is fitted to the model's answers
-/// (two_intervals.h), with one exponent b (0.5 to 6) for both polarities and a share l of lapses (0 to 0.06), because a
-/// person lapses. At each of 36 pairs of b and l, ln t of each polarity is fitted by maximum likelihood; the result is
-/// the mean over the pairs, weighted by the likelihood. t is a threshold without lapses, as for the model. The half
-/// difference does not contain the offset of the target.
+/// Fits 0.5 l + (1 - l) Phi(0.674 (c / t)^b) to the answers. The same function is fitted to the model's answers
+/// (two_intervals.h), but with one exponent b (0.5 to 6) for both polarities and, because a person lapses, a share l of
+/// lapses (0 to 0.06). At each of 36 pairs of b and l, ln t of each polarity is fitted by maximum likelihood; the
+/// result is the mean over the pairs, weighted by the likelihood. t is a threshold without lapses, as for the model.
+/// The half difference does not contain the offset of the target.
 ///
-/// The interval is that of the jackknife over the set-ups, with Student's t, for ln half_k. Its variance is at least
-/// that of independent answers: the observed information at each pair, and the scatter between the pairs. A missing
-/// threshold has a reason: too few answers or set-ups, answers that do not differ from guessing (p > 0.001), or a
-/// threshold outside the contrasts shown.
+/// The interval for ln half_k comes from the jackknife over the set-ups, with Student's t. Its variance is at least
+/// that of independent answers: the observed information at each pair plus the scatter between the pairs. If there is
+/// no threshold, the reason is one of these: too few answers or set-ups, answers that do not differ from guessing (p >
+/// 0.001), or a threshold outside the presented contrasts.
 [[nodiscard]] ForcedChoiceThreshold forced_choice_threshold(std::span<const ForcedChoice> answers);
 
 }  // namespace todbench

@@ -6,9 +6,10 @@
 
 namespace todbench {
 
-/// Median over all pixels; for an even number the mean of the two middle ones. Precondition: not empty, no NaN.
+/// Returns the median over all pixels; for an even number the mean of the two middle ones. Precondition: not empty, no
+/// NaN.
 [[nodiscard]] double median_of(const cv::Mat1d& picture);
-/// Median distance from the median.
+/// Returns the median distance from the median.
 [[nodiscard]] double median_deviation_of(const cv::Mat1d& picture);
 
 }  // namespace todbench

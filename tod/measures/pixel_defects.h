@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Defective pixels in a cube of frames of a flat field, and pixels that the camera has replaced.
+// Defective pixels in a cube of frames of a flat field, and pixels that the camera has substituted.
 #pragma once
 
 #include <array>
@@ -18,11 +18,11 @@ namespace todbench {
 /// Kinds of defects.
 enum class PixelDefect {
   stuck,         ///< the same value in every frame
-  offset,        ///< dead or hot by its level in the flat field
-  unresponsive,  ///< dead by its response to temperature
+  offset,        ///< dead or hot according to its level in the flat field
+  unresponsive,  ///< dead according to its response to temperature
   noisy,
-  blinking,     ///< switches between two levels, or stays on another one for a stretch of frames
-  substituted,  ///< equals a neighbour, or the mean of neighbours, in every frame: replaced by the camera
+  blinking,     ///< switches between two levels, or stays on another level for several frames
+  substituted,  ///< equals a neighbour, or the mean of neighbours, in every frame: substituted by the camera
 };
 inline constexpr std::array pixel_defect_kinds{PixelDefect::stuck, PixelDefect::offset,   PixelDefect::unresponsive,
                                                PixelDefect::noisy, PixelDefect::blinking, PixelDefect::substituted};
@@ -31,55 +31,58 @@ inline constexpr std::array pixel_defect_kinds{PixelDefect::stuck, PixelDefect::
 /// Limits of defects.
 struct PixelDefectRules {
   BadPixelRules bad;     ///< dead_responsivity, noisy, offset
-  double blinking = 3;   ///< largest change of level, in its own standard deviations, above this multiple of the median
-  double levels = 4.5;   ///< or two levels this many standard deviations apart, of the pixel and of the median pixel
-  double chance = 1e-3;  ///< probability, over all pixels, of taking a live one for substituted
+  double blinking = 3;   ///< largest change of level, in its own standard deviations: above this multiple of the median
+  double levels = 4.5;   ///< or two levels this many standard deviations apart, both of the pixel and of the median
+                         ///< pixel
+  double chance = 1e-3;  ///< probability, over all pixels, that a live pixel is classified as substituted
 };
 
 /// Known properties of the scene.
 struct PixelScene {
   cv::Mat1d shading{};                     ///< subtracted from the mean frame before levels are compared; empty: none
-  cv::Mat1d responsivity{};                ///< signal per kelvin; NaN if not measured; empty: nowhere measured
-  std::optional<double> unit_per_count{};  ///< of the frames; empty: not known
+  cv::Mat1d responsivity{};                ///< signal per kelvin; NaN if not measured; empty: measured for no pixel
+  std::optional<double> unit_per_count{};  ///< unit of the frames per count; empty: not known
 };
 
 /// Defective pixels of a cube of frames.
 struct PixelDefects {
   int frames = 0;
   std::array<cv::Mat1b, pixel_defect_kinds.size()> found;  ///< by kind: 255 for a defect
-  cv::Mat1b bad;                                           ///< any kind but substituted
+  cv::Mat1b bad;                                           ///< any kind except substituted
   cv::Mat1b defective;                                     ///< any kind
-  cv::Mat1i cluster;        ///< size of its cluster of pixels that touch, also diagonally; 0: not defective
-  cv::Mat1d noise_sd;       ///< temporal, without the common part of rows and columns
-  cv::Mat1d mean_frame;     ///< without the shading
-  int response_tested = 0;  ///< pixels with a known response
-  std::vector<std::string> not_tested{};  ///< sentences about kinds that these frames cannot show
+  cv::Mat1i cluster;                      ///< size of the cluster of touching pixels, also diagonally; 0: not defective
+  cv::Mat1d noise_sd;                     ///< temporal, without the common part of rows and columns
+  cv::Mat1d mean_frame;                   ///< without the shading
+  int response_tested = 0;                ///< pixels with a known response
+  std::vector<std::string> not_tested{};  ///< sentences about kinds that cannot be detected in these frames
 
   [[nodiscard]] const cv::Mat1b& of(PixelDefect kind) const { return found[static_cast<std::size_t>(kind)]; }
 };
 
-/// Finds defective pixels in the frames of one cube, in order, with no correction between them. Results are in the unit
-/// of the frames. Errors: `invalid_input` (fewer than 16 frames or than 8 rows or columns, frames of different sizes, a
-/// value that is not finite, no noise, or noise below half a count, which hides defects).
+/// Finds defective pixels in the frames of one cube, in order, without a correction between them. Results are in the
+/// unit of the frames. Errors: `invalid_input` (fewer than 16 frames or fewer than 8 rows or columns, frames of
+/// different sizes, a value that is not finite, no noise, or noise below half a count, which hides defects).
 ///
-/// Stuck: a single value; tested if chance would leave less than 0.01 live pixels in this state. Offset, response and
-/// noise: bad_pixels(). Blinking, from 48 frames on, with the frames in at most 64 stretches: the largest difference
-/// between the mean of some successive stretches and that of the others, over its standard uncertainty from successive
-/// differences; or the best partition of the values into two classes of at least three frames.
+/// Stuck: the pixel has a single value; tested if fewer than 0.01 live pixels are expected in this state by chance.
+/// Offset, response and noise: bad_pixels(). Blinking: tested from 48 frames on, with the frames in at most 64 blocks.
+/// One criterion is the largest difference between the mean of some successive blocks and the mean of the others,
+/// divided by its standard uncertainty from successive differences. The other is the best partition of the values into
+/// two classes of at least three frames.
 ///
-/// Substituted: the difference from a neighbour, or from the mean of two to four of the nearest or of all eight, has
-/// less variance than `chance` allows a live pixel (chi-squared, against the median pixel's difference; frames with
-/// memory count as fewer). Of two equal pixels the later one in reading order is taken for the copy.
+/// Substituted: the pixel differs from a neighbour, or from the mean of two to four of the nearest or of all eight,
+/// with less variance than `chance` permits for a live pixel. The test is chi-squared, against the difference of the
+/// median pixel; frames with memory count as fewer. Of two equal pixels, the later one in reading order is regarded as
+/// the copy.
 [[nodiscard]] Result<PixelDefects> pixel_defects(std::span<const cv::Mat1f> frames, const PixelScene& scene,
                                                  const PixelDefectRules& rules);
 
 /// Counts in a zone of the picture, in pixels.
 struct ZoneCount {
-  int pixels = 0;    ///< of the zone in the picture
-  int measured = 0;  ///< number of these that were measured
+  int pixels = 0;    ///< pixels of the zone in the picture
+  int measured = 0;  ///< number of these pixels that were measured
   int bad = 0, substituted = 0;
-  int clusters = 0;         ///< of at least two defective pixels, with a pixel in the zone
-  int largest_cluster = 0;  ///< in pixels, including those outside the zone; 1: none touch
+  int clusters = 0;         ///< clusters of at least two defective pixels, with a pixel in the zone
+  int largest_cluster = 0;  ///< in pixels, including pixels outside the zone; 1: none touch
 };
 /// Counts the pixels of a zone. `zone` in pixels of the picture; `field`: examined part.
 [[nodiscard]] ZoneCount count_zone(const PixelDefects& defects, const cv::Rect& field, const cv::Rect& zone);

@@ -15,19 +15,19 @@ struct ShiftedPicture {
   cv::Mat1d picture;
 };
 
-/// picture = camera(x) + source(x - shift) + level of the picture. A linear slope can belong to the camera or to the
-/// source, because it changes only the levels; it is removed from both and stated separately.
+/// Model: picture = camera(x) + source(x - shift) + level of the picture. A linear slope can belong to the camera or to
+/// the source, because it changes only the levels. It is removed from both and stated separately.
 struct SeparatedPattern {
   cv::Mat1d camera;  ///< mean 0, without slope
   cv::Mat1d source;  ///< larger than a picture by the span of the shifts; mean 0, without slope
   /// Slope of the mean picture per pixel along x and y: of the camera, of the source or of both.
   cv::Point2d slope_per_px{0, 0};
-  double residual = 0;  ///< root mean square
+  double residual = 0;  ///< root mean square of the residuals
 };
 
-/// Least squares by conjugate gradients. Errors: `invalid_input` (fewer than three pictures, different sizes, shifts
-/// that do not span both axes or have a common divisor, which leaves a periodic pattern undetermined, or a value that
-/// is not finite).
+/// Separates camera and source by least squares with conjugate gradients. Errors: `invalid_input` (fewer than three
+/// pictures, different sizes, a value that is not finite, or shifts that do not span both axes or have a common
+/// divisor, which leaves a periodic pattern undetermined).
 [[nodiscard]] Result<SeparatedPattern> separated_pattern(std::span<const ShiftedPicture> pictures);
 
 }  // namespace todbench

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slow variation over a flat field: optics, shutter and housing, not the pixels.
+// Slow variation over a flat field, caused by optics, shutter and housing and not by the pixels.
 #pragma once
 
 #include <opencv2/core.hpp>
 
 namespace todbench {
 
-/// A surface of second order through a picture, by least squares.
+/// A surface of second order that is fitted to a picture by least squares.
 struct Shading {
   cv::Mat1d surface;  ///< without its mean
   double range = 0;   ///< largest minus smallest value
-  double sd = 0;      ///< over the pixels
+  double sd = 0;      ///< standard deviation over the pixels
 };
 
-/// Precondition: at least three rows and columns, finite.
+/// Fits the surface. Precondition: at least three rows and columns, finite.
 [[nodiscard]] Shading shading_of(const cv::Mat1d& picture);
 
 }  // namespace todbench

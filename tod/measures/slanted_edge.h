@@ -23,18 +23,18 @@ enum class EdgeAxis {
 /// Tails fitted to the picture of a whole plate.
 struct PlateTails {
   TailFit fit;
-  TailColumns columns;  ///< at places of the part that shows the edge
-  double step = 1;      ///< signed step of the picture for a step of 1 of the model
+  TailColumns columns;  ///< at positions in the part that shows the edge
+  double step = 1;      ///< signed step of the picture for a unit step of the model
 };
 
-/// Share of the step in wide halos above which they count: four times the error of the method.
+/// Share of the step in wide halos above which they are significant: four times the error of the method.
 inline constexpr double least_wide_share = 0.002;
 
 /// Options of slanted_edge().
 struct SlantedEdgeOptions {
-  std::optional<EdgeAxis> axis{};  ///< empty: across the edge in the picture
-  TailBounds tails{};              ///< for tails fitted to the picture itself
-  /// Tails from a larger picture that contains this one; null: fitted to this picture, outside the core.
+  std::optional<EdgeAxis> axis{};  ///< empty: the axis across the edge in the picture
+  TailBounds tails{};              ///< bounds for tails fitted to the picture itself
+  /// Tails from a larger picture that contains this one; null: fit the tails to this picture, outside the core.
   const PlateTails* plate = nullptr;
 };
 
@@ -43,13 +43,13 @@ struct SlantedEdge {
   EdgeAxis axis = EdgeAxis::x;
   /// Angle from the axis to the edge's normal: the edge is at x0 - (row - middle) tan(angle); likewise for axis y.
   double angle_deg = 0;
-  double edge_at_pitch = 0;    ///< place on the middle row (column), in pixels from the first pixel's centre
-  double curvature_pitch = 0;  ///< distance of its middle from the straight line through its ends
-  double step = 0;             ///< signal of the bright side minus that of the dark one
+  double edge_at_pitch = 0;    ///< position on the middle row (column), in pixels from the centre of the first pixel
+  double curvature_pitch = 0;  ///< distance of the edge's middle from the straight line through its ends
+  double step = 0;             ///< signal of the bright side minus signal of the dark side
   double noise_over_step = 0;  ///< standard deviation of a pixel about the edge profile
   double shading_percent = 0;  ///< change of the two sides over the window in % of the step; removed if significant
   double window_pitch = 0;     ///< range of the profile with full weight
-  int rows = 0;                ///< lines across the edge that were used
+  int rows = 0;                ///< number of lines across the edge that were used
   std::vector<double> frequency_per_pitch;  ///< 0 ... 1 cycle per pitch, along the normal
   std::vector<double> mtf;                  ///< 1 at frequency 0
   std::vector<double> mtf_low, mtf_high;    ///< 95 %, not symmetric: use both ends; relative to a source of any size
@@ -57,26 +57,27 @@ struct SlantedEdge {
   /// `widest_halo_pitch`.
   std::vector<double> mtf_low_in_picture;
   std::vector<bool> low_known;   ///< false: only TailBounds::most_halo limits `mtf_low`
-  double widest_halo_pitch = 0;  ///< largest sigma of a halo that belongs to the MTF
-  double halo_allowance = 0;     ///< largest share of the step in halos that the interval allows for
+  double widest_halo_pitch = 0;  ///< largest sigma of a halo that is part of the MTF
+  double halo_allowance = 0;     ///< largest share of the step in halos that the interval includes
   /// 95 % interval of the share of the step in halos wider than `widest_halo_pitch`. If its upper end is above
   /// least_wide_share, `mtf_low` is lower than `mtf_low_in_picture` by that share.
   double wide_halo_least = 0, wide_halo_most = 0;
-  double displacement_pitch = 0;          ///< standard deviation of the lines about the edge if significant
+  double displacement_pitch = 0;          ///< standard deviation of the lines about the edge, if significant
   std::optional<double> mtf50_per_pitch;  ///< lowest frequency at which the MTF is 0.5
   std::vector<std::string> notes;         ///< sentences
 };
 
 /// Projects every pixel along the edge, fits the profile by a cubic spline with four knots a pitch and transforms its
-/// derivative in closed form: there are no bins or differences, and no corrections for them. The frequency axis is
-/// along the normal (the cosine of the angle is included). Intervals combine a jackknife over groups of neighbouring
-/// lines with Student's t, the extremes of the tails, and the method's own error (0.0005 up to half a cycle per pitch,
-/// see docs/method/physical-measures.md). The MTF is relative to a source of the size of the picture (edge_tails.h).
+/// derivative in closed form. There are no bins or finite differences, so no corrections for them are needed. The
+/// frequency axis is along the normal (the cosine of the angle is included). Intervals combine a jackknife over groups
+/// of neighbouring lines with Student's t, the extremes of the tails, and the method's own error (0.0005 up to half a
+/// cycle per pitch, see docs/method/physical-measures.md). The MTF is relative to a source of the size of the picture
+/// (edge_tails.h).
 ///
 /// Precondition: one straight edge with a flat field on both sides, in any linear unit. Errors: `invalid_input` in one
-/// sentence (no edge above the noise; a slant of less than a pitch over the picture, beyond 46 degrees, or one that
-/// leaves gaps between the samples; an edge that leaves the picture, comes closer than 5 pitches to its border, is
-/// bent, or was clipped).
+/// sentence. The edge does not exceed the noise, leaves the picture, comes closer than 5 pitches to its border, is
+/// bent, or was clipped. Or the slant is less than a pitch over the picture, exceeds 46 degrees, or leaves gaps between
+/// the samples.
 [[nodiscard]] Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOptions& options);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MTF along several directions from a star of sectors (slanted star, in the spirit of ISO 12233:2023).
+// MTF along several directions from a star of sectors (slanted star, similar to ISO 12233:2023).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -15,30 +15,30 @@ namespace todbench {
 
 /// A star in a picture: bright and dark sectors round a centre.
 struct StarPlace {
-  cv::Point2d centre_px;  ///< from the centre of the first pixel
+  cv::Point2d centre_px;  ///< measured from the centre of the first pixel
   double radius_px = 0;
 };
 
-/// Direction of an MTF against the line from the middle of the picture to the star.
+/// Direction of an MTF relative to the line from the middle of the picture to the star.
 enum class StarDirection {
   tangential,  ///< along that line, within 22.5 degrees (meridional)
   sagittal,    ///< across that line, within 22.5 degrees
-  oblique,     ///< between both
-  central,     ///< the middle of the picture is in the star: there is no such line
+  oblique,     ///< between the two
+  central,     ///< the middle of the picture is in the star, so this line is undefined
 };
 [[nodiscard]] std::string_view to_string(StarDirection direction);
 
 /// One edge of a star.
 struct StarEdge {
-  double edge_deg = 0;    ///< from the centre outwards, from +x towards +y (down), 0 to 360
-  double normal_deg = 0;  ///< along which the MTF is, from +x towards +y, 0 to 180
+  double edge_deg = 0;    ///< direction from the centre outwards, from +x towards +y (down), 0 to 360
+  double normal_deg = 0;  ///< direction of the MTF, from +x towards +y, 0 to 180
   StarDirection direction = StarDirection::central;
-  cv::Rect region{};                      ///< of the picture, without another edge
+  cv::Rect region{};                      ///< part of the picture that contains no other edge
   std::optional<SlantedEdge> measured{};  ///< empty: rejected
-  std::string rejected{};                 ///< why
+  std::string rejected{};                 ///< reason
 };
 
-/// Finds the edges on circles round the centre and measures each in a region of its own (slanted_edge()). Edges in the
+/// Finds the edges on circles round the centre and measures each in its own region (slanted_edge()). Edges are in the
 /// order of edge_deg. Errors: `invalid_input` (a star that extends beyond the picture, a radius below 30 pixels, an odd
 /// number of edges or fewer than 4, edges closer than 15 degrees, no edge that could be measured).
 [[nodiscard]] Result<std::vector<StarEdge>> slanted_star(const cv::Mat1d& picture, const StarPlace& star,

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Temporal noise of pixels by a definition that does not depend on the length of a block of frames, and its correlation
-// in time.
+// Temporal noise of pixels, defined independently of the length of a block of frames, and its correlation in time.
 #pragma once
 
 #include <cstdint>
@@ -22,40 +21,40 @@ struct TimedPicture {
 
 /// Result of temporal_noise(), in the unit of the pictures.
 struct TemporalNoise {
-  /// Standard deviation of a pixel from successive frames, sqrt(mean d^2 / 2). It is the standard deviation of white
-  /// noise; for noise with memory it is lower by sqrt(1 - lag1_correlation).
+  /// Standard deviation of a pixel from successive frames, sqrt(mean d^2 / 2). For white noise this is the standard
+  /// deviation; for noise with memory it is lower by sqrt(1 - lag1_correlation).
   double successive = 0;
   /// Structure function: sqrt(mean d^2 / 2) over pixels and pairs of frames at each lag in exposures. Lags without a
-  /// pair are left out; the first is that of `successive`.
+  /// pair are omitted; the first one is the lag of `successive`.
   std::vector<int> lags;
   std::vector<double> structure;
-  /// Ratio of the structure function at the longest lag with enough pairs to `successive`, both without changes of
-  /// whole frames, which affect no decision: noise of a single frame over noise in successive frames, as far as it
-  /// changes within that lag. 1 for white noise.
+  /// Ratio of the structure function at the longest lag with enough pairs to `successive`. Both exclude changes of
+  /// whole frames, which do not affect decisions. It is the ratio of the noise of a single frame to the noise in
+  /// successive frames, as far as the noise changes within that lag. 1 for white noise.
   double whole_to_successive = 1;
   /// Lag-1 correlation of a pixel for noise of first order, without changes of whole frames; empty: too few frames.
   std::optional<double> lag1_correlation;
-  /// 0: the pixel never changes, or the scene moved there (more than twice the median pixel's noise).
+  /// 0 for a pixel that never changes, or where the scene moved (more than twice the median pixel's noise).
   cv::Mat1b usable;
-  double usable_share = 1;  ///< of the pixels
+  double usable_share = 1;  ///< share of the pixels
 };
 
 /// Longest lag of the structure function.
 inline constexpr int longest_lag = 64;
 
-/// Measures the temporal noise. Compares at most 128 pairs per lag, evenly spread over the sequence. Errors:
+/// Measures the temporal noise. Compares at most 128 pairs per lag, which are evenly spread over the sequence. Errors:
 /// `invalid_input` (no two pictures of one segment, pictures of different sizes, or no noise).
 [[nodiscard]] Result<TemporalNoise> temporal_noise(std::span<const TimedPicture> pictures);
 
-/// Whether the level of whole frames stays changed after a jump, as after a correction. `before` and `behind`: levels
-/// of successive frames before and after the jump. True if their means differ by more than six standard errors of the
-/// difference. Also true with fewer than five frames in total or no frames on one side, because the test is then not
-/// possible.
+/// Returns whether the level of whole frames stays changed after a jump, as after a correction. `before` and `behind`:
+/// levels of successive frames before and after the jump. True if their means differ by more than six standard errors
+/// of the difference. Also true with fewer than five frames in total or no frames on one side, because the test is then
+/// not possible.
 [[nodiscard]] bool level_stays_changed(std::span<const double> before, std::span<const double> behind);
 
-/// Lag-1 correlation of noise of first order (Box and Jenkins 1970, 3.2.3) whose squared structure function at `lag` >=
-/// 2 is `ratio` times that at lag 1: the root of 1 + rho + ... + rho^(lag - 1) = ratio, in [-1, 1]. It is independent
-/// of mean and variance over the sequence, and little affected by slow drift.
+/// Returns the lag-1 correlation of noise of first order (Box and Jenkins 1970, 3.2.3) whose squared structure function
+/// at `lag` >= 2 is `ratio` times that at lag 1. It is the root of 1 + rho + ... + rho^(lag - 1) = ratio, in [-1, 1].
+/// It is independent of mean and variance over the sequence, and slow drift affects it little.
 [[nodiscard]] double first_order_correlation(double ratio, int lag);
 
 }  // namespace todbench

@@ -25,7 +25,7 @@ struct ThreeDNoise {
   double vh = 0;   ///< fixed pattern, and the scene if there is one
   double v = 0;    ///< fixed rows
   double h = 0;    ///< fixed columns
-  /// Temporal noise of a pixel: the root of the sum of squares of t, tv, th and tvh.
+  /// Returns the temporal noise of a pixel: the root of the sum of squares of t, tv, th and tvh.
   [[nodiscard]] double temporal() const;
 };
 
@@ -33,7 +33,7 @@ struct ThreeDNoise {
 /// sizes).
 [[nodiscard]] Result<ThreeDNoise> three_d_noise(std::span<const cv::Mat1f> frames);
 
-/// The components by name, in the order of every list.
+/// The components, in the order of every list.
 enum class NoiseComponent { t, v, h, tv, th, vh, tvh };
 inline constexpr std::array noise_components{NoiseComponent::t,  NoiseComponent::v,  NoiseComponent::h,
                                              NoiseComponent::tv, NoiseComponent::th, NoiseComponent::vh,
@@ -57,65 +57,66 @@ struct NoiseTable {
   int frames = 0, rows = 0, columns = 0;
   ByComponent mean_squares;        ///< in the square of the frames' unit
   ByComponent degrees_of_freedom;  ///< t T-1, v V-1, h H-1, and their products
-  /// First-order correlation of tvh in successive frames that the estimates allow for; 0: the plain analysis of
-  /// variance with independent cells. In T frames with memory the variance in time is smaller than that of the noise,
-  /// and more than a T-th of it remains in the mean frame: E Q_tvh = h tvh^2 and E Q_vh = T vh^2 + g tvh^2 with g = 1 +
-  /// 2 sum over k < T of (1 - k / T) rho^k and h = 1 - (g - 1) / (T - 1). Without the correction, rho = 0.8 and 64
-  /// frames give 6 % less noise and an apparent fixed pattern of a third of the noise. The value is below 1.
+  /// First-order correlation of tvh in successive frames that the estimates include; 0: the plain analysis of variance
+  /// with independent cells. In T frames with memory the variance in time is smaller than that of the noise, and more
+  /// than 1/T of it remains in the mean frame: E Q_tvh = h tvh^2 and E Q_vh = T vh^2 + g tvh^2 with g = 1 + 2 sum over
+  /// k < T of (1 - k / T) rho^k and h = 1 - (g - 1) / (T - 1). Without this correction, rho = 0.8 and 64 frames yield 6
+  /// % less noise and an apparent fixed pattern of a third of the noise. The value is below 1.
   double pixel_memory = 0;
 };
 
 /// A variance component with its uncertainty.
 struct ComponentEstimate {
-  /// Signed and unbiased; equal to the correction for finite sampling of Haefner and Burks (Appl. Opt. 54, 4907, 2015).
+  /// Signed and unbiased. Equal to the correction for finite sampling of Haefner and Burks (Appl. Opt. 54, 4907, 2015).
   double variance = 0;
   /// 95 % interval for normal components: modified large sample (Ting et al. 1990, Graybill and Wang 1980). Signed. For
-  /// noise with memory, half of the memory correction is added in quadrature: the mean of two frames has the same lag-1
-  /// correlation as noise of first order, but needs only half of the correction.
+  /// noise with memory, half of the memory correction is added in quadrature. The reason is the mean of two frames: it
+  /// has the same lag-1 correlation as noise of first order, but needs only half of the correction.
   double low = 0, high = 0;
-  /// For tv, th and vh: probability of so large a mean square without this component (F test against tvh). Empty: no
-  /// test for this component, or no noise to test against.
+  /// For tv, th and vh: probability of a mean square at least this large without the component (F test against tvh).
+  /// Empty: no test for this component, or no noise to test against.
   std::optional<double> p_absent{};
 };
 
 /// Estimates one component.
 [[nodiscard]] ComponentEstimate estimate_of(const NoiseTable& table, NoiseComponent component);
-/// All variation in time: the mean variance of the pixels over frames (t, tv, th and tvh together), with the interval
-/// of a sum of mean squares (Graybill and Wang 1980).
+/// Estimates all variation in time: the mean variance of the pixels over frames (t, tv, th and tvh together), with the
+/// interval of a sum of mean squares (Graybill and Wang 1980).
 [[nodiscard]] ComponentEstimate temporal_variance(const NoiseTable& table);
 
-/// Takes the frames of a table one after the other without keeping them: it needs the memory of three pictures in
+/// Accumulates the frames of a table one after another without storing them. It needs the memory of three pictures in
 /// double precision. A fixed scene or pattern and changes of whole frames do not reduce the precision of the other
 /// components. One thread at a time.
 class NoiseCube {
  public:
-  /// Errors of add(): `invalid_input` (not the size of the first frame, or a value that is not finite).
+  /// Add a frame. Errors: `invalid_input` (not the size of the first frame, or a value that is not finite).
   [[nodiscard]] Result<void> add(const cv::Mat1w& frame);
   [[nodiscard]] Result<void> add(const cv::Mat1f& frame);
   [[nodiscard]] Result<void> add(const cv::Mat1d& frame);
   [[nodiscard]] int frames() const { return frames_; }
-  /// Errors: `invalid_input` (fewer than two frames, rows or columns).
+  /// Returns the table. Errors: `invalid_input` (fewer than two frames, rows or columns).
   [[nodiscard]] Result<NoiseTable> table() const;
-  /// Same after a fixed picture, for example the shading of the field, is subtracted, which changes v, h and vh.
+  /// Same after subtraction of a fixed picture, for example the shading of the field. This changes v, h and vh.
   /// Precondition: `fixed` has the frames' size.
   [[nodiscard]] Result<NoiseTable> table_without(const cv::Mat1d& fixed) const;
-  /// Mean over all frames. Precondition: at least one frame.
+  /// Returns the mean over all frames. Precondition: at least one frame.
   [[nodiscard]] cv::Mat1d mean_frame() const { return first_ + change_ / frames_; }
-  /// Lag-1 correlation of a pixel without rows, columns and whole frames: the rho of the noise of first order with
-  /// the same ratio of mean squared successive difference to mean square, for as many frames; -0.99 to 0.99. Empty: no
-  /// noise, or fewer than five frames.
+  /// Returns the lag-1 correlation of a pixel without rows, columns and whole frames. It is the rho of first-order
+  /// noise that has the same ratio of mean squared successive difference to mean square, for the same number of frames;
+  /// -0.99 to 0.99. Empty: no noise, or fewer than five frames.
   [[nodiscard]] std::optional<double> lag1_correlation() const;
-  /// NoiseTable::pixel_memory of these frames: lag1_correlation() if it exceeds five standard errors and is at most
-  /// 0.95, else 0. Above 0.95 this few frames do not distinguish it from drift.
+  /// Returns NoiseTable::pixel_memory of these frames: lag1_correlation() if it exceeds five standard errors and is at
+  /// most 0.95, otherwise 0. Above 0.95 so few frames do not distinguish it from drift.
   [[nodiscard]] double pixel_memory() const;
-  /// Index of the first frame that differs from the previous one by more than the others do, pixel by pixel, because of
-  /// a correction or a moved scene. The statistic is the mean square of the difference without its rows, columns and
-  /// mean. Its expectation is the same for every pair, whatever the memory of the noise. Limit: 1.69 times the median
-  /// pair's, exceeded by chance in less than 1e-9 of all recordings. Empty: no such frame, or fewer than five frames.
+  /// Returns the index of the first frame that differs from the previous one more than other frames do, pixel by pixel,
+  /// because of a correction or a moved scene. The statistic is the mean square of the difference without its rows,
+  /// columns and mean. Its expectation is the same for every pair, regardless of the memory of the noise. The limit is
+  /// 1.69 times the value of the median pair; chance exceeds it in less than 1e-9 of all recordings. Empty: no such
+  /// frame, or fewer than five frames.
   [[nodiscard]] std::optional<int> abrupt_change() const;
-  /// Whether few pairs of successive frames stand out, as with a correction. A pair stands out if its mean square
-  /// difference is above 1.3 times the median; few are at most three. If more stand out, the noise changes or the scene
-  /// moves, and the frame of abrupt_change() means nothing.
+  /// Returns whether at most three pairs of successive frames stand out, as with a correction. A pair stands out if its
+  /// mean square difference is above 1.3 times the median. If more stand out, the noise changes or the scene moves, and
+  /// the result of abrupt_change() is meaningless.
   [[nodiscard]] bool few_pairs_stand_out() const;
 
  private:
@@ -123,13 +124,13 @@ class NoiseCube {
   [[nodiscard]] Result<void> add_frame(const cv::Mat_<Pixel>& frame);
 
   int frames_ = 0;
-  cv::Mat1d first_;                               ///< reference of every frame
-  cv::Mat1d change_;                              ///< sum over frames of change - mean change of its frame
+  cv::Mat1d first_;                               ///< first frame, the reference of every frame
+  cv::Mat1d change_;                              ///< sum over frames of (change - mean change of its frame)
   double squares_ = 0;                            ///< sum of the squares of these changes
   cv::Mat1d last_;                                ///< change of the last frame without its mean
   std::vector<double> steps_;                     ///< mean square of each successive difference
   std::vector<double> frame_means_;               ///< mean change of each frame
-  std::vector<double> row_means_, column_means_;  ///< of each frame, one after the other, without the frame's mean
+  std::vector<double> row_means_, column_means_;  ///< of each frame in order, without the frame's mean
 };
 
 }  // namespace todbench

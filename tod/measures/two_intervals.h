@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two-interval decisions of an observer: share of correct answers from its scores, and the contrast for 75 %.
+// Two-interval decisions of an observer: share of correct answers from its scores, and the contrast for 75 % correct.
 #pragma once
 
 #include <array>
@@ -20,12 +20,12 @@ struct ShareOfPairs {
   double mean = 0, standard_error = 0;
 };
 
-/// Share of pairs of draws, one with each pattern, in which the score for `pattern` is larger; pairs of one draw number
-/// are left out. Standard error after DeLong et al. (1988), Biometrics 44. Precondition: at least two draws, all rows
-/// of one length.
+/// Returns the share of pairs of draws, one from each of `pattern` and `other`, in which the score for `pattern` is
+/// larger. Pairs with equal draw numbers are excluded. Standard error after DeLong et al. (1988), Biometrics 44.
+/// Precondition: at least two draws, all rows of equal length.
 [[nodiscard]] ShareOfPairs share_of_pairs(const IntervalScores& pattern, const IntervalScores& other);
 
-/// First crossing of 75 % over rising contrasts, interpolated in probit over ln contrast.
+/// First crossing of 75 % over increasing contrasts, interpolated in probit over ln contrast.
 struct PassedContrast {
   std::optional<double> contrast_k;
   double relative_error = 0;
@@ -33,19 +33,19 @@ struct PassedContrast {
 /// Finds the crossing; empty if the shares do not cross 75 %.
 [[nodiscard]] PassedContrast passed_contrast(std::span<const double> contrasts_k, std::span<const ShareOfPairs> shares);
 
-/// Psychometric function of contrast, Phi(z75 (c / threshold)^exponent): the distance between sensitivity and contrast
-/// grows as a power (Foley and Legge 1981). Sampling changes the energy of a pattern with its phase p, by the
-/// interference of its spectrum with the repeats at whole cycles per sample. The threshold falls with the root of the
-/// energy: threshold = level / sqrt(1 + swing[0] cos(2 pi p) + swing[1] sin(2 pi p)). The sine term is needed if the
-/// place of the pattern is known only up to an offset of a part of a sample.
+/// Psychometric function of contrast, Phi(z75 (c / threshold)^exponent): sensitivity d' is a power function of contrast
+/// (Foley and Legge 1981). Sampling changes the energy of a pattern with its phase p, because its spectrum interferes
+/// with the repeats at integer cycles per sample. The threshold decreases with the square root of the energy: threshold
+/// = level / sqrt(1 + swing[0] cos(2 pi p) + swing[1] sin(2 pi p)). The sine term is needed if the position of the
+/// pattern is known only up to an offset of a fraction of a sample.
 struct ContrastFunction {
   double level_k = 0;             ///< threshold of the mean energy over the phases
   double exponent = 1;            ///< between 0.3 and 8
   std::array<double, 2> swing{};  ///< 0 if phases were not fitted
 
-  /// ln threshold at a phase minus ln level.
+  /// Returns ln threshold at a phase minus ln level.
   [[nodiscard]] double ln_ratio_at(double phase) const;
-  /// Phase of the lowest threshold, in -0.5 to 0.5.
+  /// Returns the phase of the lowest threshold, in -0.5 to 0.5.
   [[nodiscard]] double best_phase() const;
 };
 
@@ -53,16 +53,17 @@ struct ContrastFunction {
 struct ContrastShare {
   double contrast_k = 0;  ///< > 0
   double share = 0;
-  double phase = 0;  ///< of the pattern against the samples, in samples
+  double phase = 0;  ///< position of the pattern relative to the samples, in samples
 };
 
 /// Whether the swing over phases is fitted.
 enum class PhaseFit { none, swing };
 
-/// Weighted least squares over the shares within a factor of `fitted_span` of `near_k`; weights by binomial variance.
-/// Empty if they do not determine a threshold within that range.
+/// Fits the function by weighted least squares to the shares within a factor of `fitted_span` of `near_k`; weights by
+/// binomial variance. Empty if they do not determine a threshold within that range.
 [[nodiscard]] std::optional<ContrastFunction> fit_contrast(std::span<const ContrastShare> shares, double near_k,
                                                            PhaseFit phases = PhaseFit::none);
-inline constexpr double fitted_span = 3.3;  ///< a ladder of factor 2 has three or four contrasts in it
+inline constexpr double fitted_span = 3.3;  ///< a series of contrasts in steps of factor 2 has three or four values in
+                                            ///< it
 
 }  // namespace todbench
