@@ -27,7 +27,6 @@ struct TiffFormat {
 /// a unit (ValueCounts). Applies the tags Orientation and PhotometricInterpretation (0 as white). Reads pages on
 /// demand. Errors: `io`, `invalid_input` (not a TIFF, another kind of picture, pages of different size, no page, fewer
 /// images than ImageJ states).
-/// images than ImageJ states).
 [[nodiscard]] Result<Recording> open_tiff_stack(const std::filesystem::path& path, const TiffFormat& format);
 
 }  // namespace todbench
