@@ -9,20 +9,21 @@
 
 namespace todbench {
 
-/// Acuity in 1/mrad: 1 / threshold in mrad; empty without a positive threshold.
+/// Returns the acuity in 1/mrad: 1 / threshold in mrad; empty without a positive threshold.
 [[nodiscard]] std::optional<double> acuity_per_mrad(const PsychometricFit& fit);
-/// The threshold, if the answers determine it. Empty if the interval has an open end and the verdict is step,
-/// extrapolated or underdetermined: the likelihood is nearly constant on that side, so the place found is arbitrary.
+/// Returns the threshold if the answers determine it. Empty if the interval has an open end and the verdict is step,
+/// extrapolated or underdetermined: the likelihood is then nearly constant on that side, so the position of its maximum
+/// is arbitrary.
 [[nodiscard]] std::optional<double> stated_threshold(const PsychometricFit& fit);
-/// Removes threshold, intervals and posterior of a fit. If the answers do not increase with size, these numbers only
+/// Removes threshold, intervals and posterior of a fit. If the answers do not improve with size, these values only
 /// state where the search or the prior ends.
 void remove_threshold(PsychometricFit& fit);
-/// Acuity in 1/mrad: 1 / stated_threshold() in mrad; empty without a positive threshold.
+/// Returns the acuity in 1/mrad: 1 / stated_threshold() in mrad; empty without a positive threshold.
 [[nodiscard]] std::optional<double> stated_acuity_per_mrad(const PsychometricFit& fit);
-/// The interval of 1 / S75 with exchanged sides. A lower limit of 0 gives an open side.
+/// Returns the interval of 1 / S75 with exchanged sides. A lower limit of 0 yields an open side.
 [[nodiscard]] Interval acuity_interval(const Interval& s75_mrad);
-/// The ends of 1 / S75, in 1/mrad, for a spread of S75 over the open parameters of an observer with an eye; empty
-/// without one. No confidence interval.
+/// Returns the ends of 1 / S75, in 1/mrad, for a spread of S75 over the open parameters of an observer with an eye;
+/// empty without a spread. This is not a confidence interval.
 [[nodiscard]] std::optional<Interval> acuity_spread_per_mrad(
     const std::optional<std::pair<double, double>>& s75_spread_mrad);
 

@@ -33,8 +33,8 @@ struct Maximum {
   std::array<bool, N> free{};  ///< false: fixed, or at a limit with the gradient pointing outwards
 };
 
-/// Solves M y = r for the free variables by Cholesky, M = -hessian + damping |diagonal|; empty if M is not positive
-/// definite.
+/// Solves M y = r for the free variables by Cholesky decomposition, with M = -hessian + damping |diagonal|; empty if M
+/// is not positive definite.
 template <std::size_t N>
 [[nodiscard]] std::optional<std::array<double, N>> solve_information(
     const std::array<std::array<double, N>, N>& hessian, const std::array<double, N>& r,
@@ -74,7 +74,7 @@ template <std::size_t N>
   return y;
 }
 
-/// Variables that may move from `place`.
+/// Returns which variables may move from `place`.
 template <std::size_t N>
 [[nodiscard]] std::array<bool, N> free_variables(const std::array<double, N>& place,
                                                  const std::array<double, N>& gradient, const ParameterBox<N>& box) {
@@ -88,7 +88,7 @@ template <std::size_t N>
   return free;
 }
 
-/// Whether value, gradient and second derivatives are finite.
+/// Returns whether value, gradient and second derivatives are finite.
 template <std::size_t N>
 [[nodiscard]] bool is_finite(const Expansion<N>& e) {
   if (!std::isfinite(e.value)) return false;
@@ -101,15 +101,15 @@ template <std::size_t N>
 }
 
 /// Climbs from `start` (Levenberg-Marquardt damping; an active limit is released when the gradient points inwards).
-/// Once the gain of a step is below the rounding of the value, steps are accepted as long as they reduce the gradient,
-/// so that the place is exact to the rounding of the gradient, not of the value. Ends if no step helps; a start without
-/// finite derivatives is returned unchanged.
+/// Once the gain of a step is below the rounding error of the value, steps are accepted as long as they reduce the
+/// gradient. The place is therefore exact to the rounding error of the gradient, not of the value. Ends if no step
+/// improves the result. A start without finite derivatives is returned unchanged.
 template <std::size_t N, typename Function>
 [[nodiscard]] Maximum<N> climb(const Function& function, std::array<double, N> start, const ParameterBox<N>& box) {
   for (std::size_t i = 0; i < N; ++i) start[i] = std::clamp(start[i], box.lower[i], box.upper[i]);
   Maximum<N> at{start, function(start), {}};
   double damping = 0;
-  constexpr int max_steps = 80;            // quadratic convergence takes under 10; a ridge may take all
+  constexpr int max_steps = 80;            // quadratic convergence needs fewer than 10; a ridge may need all
   constexpr double smallest_step = 1e-14;  // in ln threshold and ln slope
   for (int step_count = 0; step_count < max_steps && is_finite(at.expansion); ++step_count) {
     at.free = free_variables(at.place, at.expansion.gradient, box);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Findings against a number, with their figures, as values.
+// Findings against a result, with their figures, as values.
 #pragma once
 
 #include <algorithm>
@@ -11,27 +11,27 @@
 
 namespace todbench {
 
-/// Subject of a finding, with the meaning of its value and limit.
+/// Subject of a finding, with the meaning of its value and its limit.
 enum class FindingKind {
-  deviance,              ///< shape of the answers against the model; standard deviations, in the stated direction
+  deviance,              ///< shape of the answers relative to the model; standard deviations, in the stated direction
   lapse,                 ///< a free lapse explains the answers better; 2 ln likelihood ratio, corrected for clusters
   overdispersion,        ///< answers scatter more than chance; ratio of variances
   underdispersion,       ///< answers scatter less than chance; ratio of variances
   extrapolation,         ///< threshold outside the tested sizes; size, nearest tested size
-  slope,                 ///< slope at an end of its domain; slope, that end
-  direct_estimate,       ///< fit against the estimate without trials; difference in percent, joint tolerance
+  slope,                 ///< slope at an end of its domain; slope, this end
+  direct_estimate,       ///< fit compared with the estimate without trials; difference in percent, joint tolerance
   clipping,              ///< saturated pixels in windows of triangles; share of trials
   rounding,              ///< a count is wider than the noise; standard deviation of the noise in counts
   temporal_correlation,  ///< successive frames share noise; correlation
   surrogate,             ///< pictures that the optics model of the twin cannot produce; chi-square, its limit
   identity,  ///< curves of different plates, of the same answers, or fitted with different functions; no figures
-  contrast_deviation,  ///< effective contrast differs from the set one; percent, tolerance by the budget
+  contrast_deviation,  ///< effective contrast differs from the set contrast; percent, tolerance of the budget
   transfer_change,     ///< set-ups of one run differ in contrast; percent, tolerance by their errors
   noise_change,        ///< the noise of a pixel changed during the run; percent, tolerance
   correlation_change,  ///< the correlation of successive frames changed during the run; difference of correlations
-  picture_residue,     ///< pictures still changed while they were measured; percent of the change
+  picture_residue,     ///< pictures still changed during their measurement; percent of the change
   setting_change,      ///< a setting of the camera changed during the run; no figures
-  orientation,         ///< thresholds of upright and level triangles differ; percent, limit
+  orientation,         ///< thresholds of triangles that point up or down and left or right differ; percent, limit
   ramp_direction,      ///< S75 of ramps up and down differ; percent, limit
   contrast_lag,        ///< small triangles lag large ones in a ramp by more than stated; seconds, stated seconds
 };
@@ -48,27 +48,27 @@ inline constexpr std::array all_finding_kinds{FindingKind::deviance,           F
                                               FindingKind::contrast_lag};
 [[nodiscard]] std::string_view to_string(FindingKind kind);
 
-/// One finding against a number.
+/// One finding against a result.
 struct AdequacyFinding {
   FindingKind kind = FindingKind::deviance;
   std::optional<double> value{};  ///< observed value
-  std::optional<double> limit{};  ///< beyond it the value is a finding
+  std::optional<double> limit{};  ///< limit beyond which the value is a finding
   std::string sentence{};         ///< without a full stop
-  bool unfit = false;             ///< the number must not be used for a decision
+  bool unfit = false;             ///< the result must not be used for a decision
   bool operator==(const AdequacyFinding&) const = default;
 };
 
-/// All findings against a number.
+/// All findings against a result.
 struct Adequacy {
   std::vector<AdequacyFinding> findings{};
-  /// Fit for a decision: no finding is `unfit`.
+  /// Returns whether the result is fit for a decision: no finding is `unfit`.
   [[nodiscard]] bool adequate() const {
     return std::none_of(findings.begin(), findings.end(), [](const AdequacyFinding& finding) { return finding.unfit; });
   }
   bool operator==(const Adequacy&) const = default;
 };
 
-/// The sentences of the findings that make a number unfit, joined by "; "; empty if there are none.
+/// Returns the sentences of the findings that make a result unfit, joined by "; "; empty if there are none.
 [[nodiscard]] std::string reasons_unfit(const Adequacy& adequacy);
 
 }  // namespace todbench

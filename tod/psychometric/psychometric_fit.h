@@ -14,11 +14,11 @@
 
 namespace todbench {
 
-/// Answers at one size (or contrast). Counts are doubles to allow 2e9 trials and checks for whole numbers.
+/// Answers at one size (or contrast). Counts are doubles to allow 2e9 trials and tests for integers.
 struct Level {
   double size = 0;     ///< >= 0; 0 is a catch trial (no triangle)
-  double correct = 0;  ///< whole number, 0 <= correct <= total; for graded answers the sum of their probabilities
-  double total = 0;    ///< whole number; 0: the row is ignored
+  double correct = 0;  ///< integer, 0 <= correct <= total; for graded answers the sum of their probabilities
+  double total = 0;    ///< integer; 0: the row is ignored
   int cluster = -1;    ///< trials that share phase, frame or fixed pattern; < 0: independent
 };
 
@@ -26,20 +26,21 @@ struct Level {
 struct GradedAnswer {
   double size = 0;                 ///< > 0
   double probability_correct = 0;  ///< 0 to 1
-  int presentation = 0;            ///< shares frame and phase with the others of this number; at least 0
-  int place = 0;                   ///< in the picture: shares detectors and their fixed pattern; at least 0
-  int set_up = 0;                  ///< plate and mounting of the presentation; at least 0
+  int presentation = 0;            ///< answers with the same index share frame and phase; at least 0
+  int place = 0;   ///< place in the picture: answers share detectors and their fixed pattern; at least 0
+  int set_up = 0;  ///< plate and mounting of the presentation; at least 0
 };
 
-/// Both forms are Weibull functions with chance level 0.25 that pass through 0.75 at the threshold.
+/// Form of the function. Both forms are Weibull functions with chance level 0.25 that pass through 0.75 at the
+/// threshold.
 enum class PsychometricForm {
   size,    ///< psi = g + (1-g-l)(1 - exp(-(x/a)^b)), increasing in size
   acuity,  ///< psi = g + (1-g-l) exp(-(a/x)^b): a Weibull in acuity 1/x, the form attributed to TNO
 };
 [[nodiscard]] std::string_view to_string(PsychometricForm form);
 
-/// Each verdict is defined by a condition on the likelihood, in this order of precedence (compare Ceres' termination
-/// types).
+/// Verdict on a fit. Each verdict is defined by a condition on the likelihood, in this order of precedence (compare
+/// Ceres' termination types).
 enum class FitVerdict {
   no_data,               ///< no trials at a positive size
   above_range,           ///< supremum of the likelihood at pure chance: only a lower limit exists
@@ -58,28 +59,28 @@ struct FitOptions {
   PsychometricForm form = PsychometricForm::size;
   std::optional<double> fixed_lapse = 0.0;  ///< empty: free in [0, 0.1]
   bool with_posterior = true;
-  bool graded = false;  ///< levels are of graded answers: their counts need not be whole
+  bool graded = false;  ///< levels contain graded answers: their counts may be fractional
 };
 
 /// Posterior of the threshold.
 struct Posterior {
   double median = 0;
   double low = 0, high = 0;  ///< equal-tailed 95 %
-  /// Marginal density at a prior edge above 1 % of its maximum: the prior determines the result, not the data.
+  /// The marginal density at a prior edge is above 1 % of its maximum: the prior determines the result, not the data.
   bool prior_bound = false;
 };
 
 /// Basis of the intervals.
 enum class IntervalKind {
   independent,  ///< profile likelihood of independent answers
-  clusters,     ///< the same, widened for the common variation of the trials of a cluster
+  clusters,     ///< the same, widened for the variation that the trials of a cluster share
   two_way,      ///< quasi-likelihood, with the variance of the answers over presentations and places
   set_ups,      ///< quasi-likelihood, with the variance of the answers over plates and mountings
 };
 inline constexpr std::array all_interval_kinds{IntervalKind::independent, IntervalKind::clusters, IntervalKind::two_way,
                                                IntervalKind::set_ups};
 [[nodiscard]] std::string_view to_string(IntervalKind kind);
-/// Whether the scatter of the answers was estimated instead of binomial.
+/// Returns whether the scatter of the answers was estimated and not assumed to be binomial.
 [[nodiscard]] constexpr bool is_quasi(IntervalKind kind) {
   return kind == IntervalKind::two_way || kind == IntervalKind::set_ups;
 }
@@ -95,12 +96,12 @@ inline constexpr std::array all_fit_estimators{FitEstimator::weibull, FitEstimat
 /// Reason for the choice of the function.
 enum class EstimatorReason {
   plan,           ///< the plan states it
-  twin,           ///< there is a simulated twin, whose function it is
-  no_twin,        ///< counts without a simulated sensor
-  person,         ///< a person answered, with a function of their own
+  twin,           ///< there is a simulated twin, and its function is used
+  no_twin,        ///< there are only counts, without a simulated sensor
+  person,         ///< a person answered, who has an individual function
   modules,        ///< modules follow the sensor: the function of the sensor alone does not describe the chain
-  package,        ///< likewise with an enhancement package
-  moving_target,  ///< the twin's function is that of a target at rest
+  package,        ///< likewise for an enhancement package
+  moving_target,  ///< the twin's function is only valid for a target at rest
   irregular,      ///< the Weibull fit has no usable threshold (verdict)
   no_function,    ///< the twin has no usable function at this contrast
   ended_early,    ///< the run ended before its functions were available
@@ -111,42 +112,44 @@ inline constexpr std::array all_estimator_reasons{EstimatorReason::plan,        
                                                   EstimatorReason::moving_target, EstimatorReason::irregular,
                                                   EstimatorReason::no_function,   EstimatorReason::ended_early};
 [[nodiscard]] std::string_view to_string(EstimatorReason reason);
-/// Reason for a sentence: "there is a simulated twin".
+/// Returns the reason for a sentence: "there is a simulated twin".
 [[nodiscard]] std::string_view in_words(EstimatorReason reason);
 
-/// Proportion correct over size of a simulated sensor, without an assumed form, averaged over phases and noise.
+/// Proportion correct of a simulated sensor as a function of size, without an assumed form, averaged over phases and
+/// noise.
 struct ProportionTable {
-  std::vector<double> size_mrad;           ///< rising
+  std::vector<double> size_mrad;           ///< increasing
   std::vector<double> proportion_correct;  ///< at each size
-  std::vector<double> standard_error;      ///< of each proportion
+  std::vector<double> standard_error;      ///< standard error of each proportion
   bool operator==(const ProportionTable&) const = default;
 };
 
 /// Result of a fit with the function of a twin (twin_shape.h).
 struct TwinShapeUse {
-  double size_ratio = 1;      ///< ratio of the sizes at 75 %: these answers over the twin
-  double slope_ratio = 1;     ///< ratio of the slopes at 75 %, likewise
+  double size_ratio = 1;      ///< ratio of the sizes at 75 %: these answers divided by the twin
+  double slope_ratio = 1;     ///< ratio of the slopes at 75 %: these answers divided by the twin
   bool slope_fitted = false;  ///< the answers required their own slope
   /// t of a further parameter: the slope, or a bend if the slope was fitted.
   double departure = 0;
-  double departure_limit = 0;        ///< for the magnitude of departure; exceeded by chance in 1 %
-  double departure_shift = 0;        ///< change of ln threshold by that parameter
+  double departure_limit = 0;        ///< limit of |departure|; chance exceeds it in 1 %
+  double departure_shift = 0;        ///< change of ln threshold due to that parameter
   double shape_se_ln_threshold = 0;  ///< contribution of the standard errors of the table
-  double lapse_inflation = 1;        ///< of a free lapse: its clustered variance over that of independent answers
+  double lapse_inflation = 1;  ///< for a free lapse: its clustered variance divided by the variance of independent
+                               ///< answers
   ProportionTable table;
   bool operator==(const TwinShapeUse&) const = default;
 };
 
-/// Result of a fit. A poor fit has a verdict; it is not an error and has no invented interval.
+/// Result of a fit. A poor fit is not an error: it has a verdict and no invented interval.
 struct PsychometricFit {
   FitVerdict verdict = FitVerdict::no_data;
   std::optional<double> threshold;  ///< size at which psi = 0.75 exactly
-  /// Profile likelihood (drop 3.84); if one side is open the other is a one-sided 95 % limit (drop 2.71).
+  /// Profile likelihood (drop 3.84). If one side is open, the other one is a one-sided 95 % limit (drop 2.71).
   Interval ci95;
   Interval ci90;                ///< profile likelihood (drop 2.71), for equivalence tests
   std::optional<double> slope;  ///< b
-  /// The slope is at the upper end of its domain, 50: the data require a steeper one, and the intervals are limited to
-  /// slopes within the domain. If the gap of a step is too narrow for the domain, the interval contains the gap.
+  /// The slope is at the upper end of its domain, 50. The data require a steeper slope, and the intervals are limited
+  /// to slopes within the domain. If the gap of a step is too narrow for the domain, the interval contains the gap.
   bool slope_at_cap = false;
   double lapse = 0;
   std::optional<double> log_likelihood;  ///< without binomial coefficients
@@ -159,42 +162,42 @@ struct PsychometricFit {
   /// Number of clusters; 0 if trials are independent. For a quasi-likelihood the effective number: degrees of freedom
   /// of the variance plus one.
   double clusters = 0;
-  /// Ratio of the clustered to the independent variance of ln threshold; already in ci95 and ci90. Mostly below 1 for
-  /// graded answers.
+  /// Ratio of the clustered to the independent variance of ln threshold; ci95 and ci90 already include it. Usually
+  /// below 1 for graded answers.
   double variance_inflation = 1;
-  /// Standard uncertainty of ln threshold in ci95 and ci90 in addition to that of the answers: of the effective
-  /// contrast, and of an uncertain function. Not in variance_inflation.
+  /// Additional standard uncertainty of ln threshold that ci95 and ci90 include: of the effective contrast, and of an
+  /// uncertain function. It is not part of variance_inflation.
   double joined_u = 0;
   double contrast_u = 0;  ///< part of joined_u from the scatter of the effective contrast
   double lag_u = 0;       ///< part of joined_u from the lag between the triangles while the contrast changes
-  /// Mean squared residual of graded answers over that of binary answers; empty for binary answers.
+  /// Ratio of the mean squared residual of graded answers to that of binary answers; empty for binary answers.
   std::optional<double> dispersion;
   std::optional<TwinShapeUse> twin_shape;  ///< empty: a Weibull function
 
-  /// Whether the verdict is ok or extrapolated and ci95 has both ends.
+  /// Returns whether the verdict is ok or extrapolated and ci95 has both ends.
   [[nodiscard]] bool usable() const;
 };
 
-/// The function with which a fit was made.
+/// Returns the function that was fitted.
 [[nodiscard]] inline FitEstimator estimator_of(const PsychometricFit& fit) {
   return fit.twin_shape ? FitEstimator::twin_shape : FitEstimator::weibull;
 }
 
-/// psi(size) of the model at a threshold, slope and lapse; exact at size 0 and for huge arguments.
+/// Returns psi(size) of the model for a threshold, slope and lapse; exact at size 0 and for huge arguments.
 [[nodiscard]] double psychometric(PsychometricForm form, double size, double threshold, double slope, double lapse);
 
-/// Maximum likelihood in (ln threshold, ln slope[, lapse]) by global search and Newton refinement, with
-/// profile-likelihood and posterior intervals. Levels may be unsorted, repeated, single trials. With clusters
+/// Fits by maximum likelihood in (ln threshold, ln slope[, lapse]), with global search and Newton refinement, and with
+/// profile-likelihood and posterior intervals. Levels may be unsorted, repeated, or single trials. With clusters
 /// (Level::cluster >= 0) the intervals are widened by the sandwich variance over clusters and Student's t. Above 400
 /// different sizes, neighbours are pooled for the search (100 000 sizes over a factor of ten move by less than 1e-4 of
 /// the interval), and the final climb uses each size. Errors: `invalid_input` (negative, denormal or non-finite size,
 /// fractional or negative counts, correct > total, more than 1e12 trials).
 [[nodiscard]] Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const FitOptions& options);
 
-/// Fits the same function to graded answers by quasi-likelihood: the mean is that of right and wrong answers, the
-/// variance in proportion to theirs (Wedderburn 1974; McCullagh and Nelder 1989, 9). The profile is scaled by the
-/// variance of ln threshold over set-ups, or over presentations and places (clustered_variance.h), with Student's t;
-/// there is no posterior. Errors: `invalid_input` (as fit_psychometric(), and a probability outside 0 to 1).
+/// Fits the same function to graded answers by quasi-likelihood: the mean is that of binary answers, and the variance
+/// is proportional to theirs (Wedderburn 1974; McCullagh and Nelder 1989, 9). The profile is scaled by the variance of
+/// ln threshold over set-ups, or over presentations and places (clustered_variance.h), with Student's t. There is no
+/// posterior. Errors: `invalid_input` (as fit_psychometric(), and a probability outside 0 to 1).
 [[nodiscard]] Result<PsychometricFit> fit_graded(std::span<const GradedAnswer> answers, const FitOptions& options);
 
 }  // namespace todbench

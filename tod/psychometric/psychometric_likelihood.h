@@ -20,7 +20,7 @@ struct PooledLevel {
   [[nodiscard]] double total() const { return right + wrong; }
 };
 
-/// All data of the likelihood: equal sizes pooled, sorted, and relative to a central size so that units drop out.
+/// All data of the likelihood. Equal sizes are pooled, sorted, and relative to a central size, so that units cancel.
 struct PooledCounts {
   std::vector<PooledLevel> levels;          ///< positive sizes, increasing, total > 0
   double blank_right = 0, blank_wrong = 0;  ///< size 0 (no triangle): psi = chance
@@ -29,21 +29,21 @@ struct PooledCounts {
   [[nodiscard]] double trials() const;
   [[nodiscard]] double first() const { return levels.front().ln_size; }
   [[nodiscard]] double last() const { return levels.back().ln_size; }
-  /// ln(size / reference size).
+  /// Returns ln(size / reference size).
   [[nodiscard]] double relative(double size) const;
-  /// Size at a relative logarithm; empty if a double cannot represent it.
+  /// Returns the size at a relative logarithm; empty if a double cannot represent it.
   [[nodiscard]] std::optional<double> size_at(double ln_size) const;
 };
 
-/// Most trials of one fit. The likelihood of n trials is about n, so it is rounded by 2e-16 n: at 1e12 the relative
-/// error of the drop of 3.84 that makes an interval is below 2e-4, at 1e15 it is a fifth.
+/// Maximum number of trials of one fit. The likelihood of n trials is about n, so its rounding error is 2e-16 n. The
+/// drop of 3.84 that defines an interval has a relative error below 2e-4 for 1e12 trials, and of a fifth for 1e15.
 inline constexpr double most_trials = 1e12;
 
-/// Whether counts of right answers are whole or sums of probabilities.
+/// Whether counts of correct answers are integers or sums of probabilities.
 enum class Counts { whole, fractional };
 
-/// Checks the rows: sizes are 0 or positive normal numbers (a denormal one has lost digits), counts as stated, correct
-/// <= total, at most most_trials together. Errors: `invalid_input` with the first invalid row.
+/// Checks the rows. Sizes are 0 or positive normal numbers (a denormal number has lost digits), counts are as stated,
+/// correct <= total, at most most_trials in total. Error: `invalid_input` with the first invalid row.
 [[nodiscard]] Result<void> validate(std::span<const Level> levels, Counts counts = Counts::whole);
 
 /// Pools validated rows. Sizes closer than 1e-12 (relative) are one level.
@@ -51,7 +51,7 @@ enum class Counts { whole, fractional };
 /// Pools two sets, with sizes relative to the reference of the first.
 [[nodiscard]] PooledCounts pool(const PooledCounts& a, const PooledCounts& b);
 
-/// Merges neighbouring levels so that at most `most_levels` remain, each at the mean of its ln sizes weighted by
+/// Merges neighbouring levels so that at most `most_levels` remain. Each is at the mean of its ln sizes, weighted by
 /// trials. Spans of ln size are equal: levels further apart than a span stay separate.
 [[nodiscard]] PooledCounts grouped(const PooledCounts& counts, std::size_t most_levels);
 
@@ -59,23 +59,23 @@ enum class Counts { whole, fractional };
 using PsychometricPlace = std::array<double, 3>;
 inline constexpr std::size_t place_t = 0, place_q = 1, place_lapse = 2;
 
-/// ln likelihood without binomial coefficients.
+/// Returns the ln likelihood without binomial coefficients.
 [[nodiscard]] double log_likelihood(const PooledCounts& counts, PsychometricForm form, const PsychometricPlace& place);
-/// Likelihood with first and second derivatives in (t, q, lapse).
+/// Returns the likelihood with first and second derivatives in (t, q, lapse).
 [[nodiscard]] Expansion<3> expand_likelihood(const PooledCounts& counts, PsychometricForm form,
                                              const PsychometricPlace& place);
-/// Gradient of ln psi (for one right answer) and of ln(1 - psi) (one wrong answer) in (t, q, lapse) at a relative ln
-/// size.
+/// Gradient of ln psi (for one correct answer) and of ln(1 - psi) (for one wrong answer) in (t, q, lapse) at a relative
+/// ln size.
 struct Scores {
   std::array<double, 3> right{}, wrong{};
 };
-/// Scores at a relative ln size.
+/// Returns the scores at a relative ln size.
 [[nodiscard]] Scores scores_at(PsychometricForm form, const PsychometricPlace& place, double ln_size);
 
-/// Deviance of the model against one free probability per level, summed level by level so that large counts do not
-/// cancel.
+/// Returns the deviance of the model relative to one free probability per level. It is summed level by level, so that
+/// large counts do not cancel.
 [[nodiscard]] double deviance(const PooledCounts& counts, PsychometricForm form, const PsychometricPlace& place);
-/// ln likelihood with one free probability per level (the blank level included).
+/// Returns the ln likelihood with one free probability per level (the blank level included).
 [[nodiscard]] double saturated(const PooledCounts& counts);
 
 /// Limits of the likelihood at the edges of the model (Prins 2019). If one of them is the supremum, there is no
@@ -86,8 +86,9 @@ struct LikelihoodLimits {
   double ceiling_lapse = 0;  ///< lapse at that limit
   double step = 0;           ///< slope -> infinity: chance below, 1 - lapse above, any value between them at one level
 };
-/// Thresholds (relative ln size) of all ideal steps, chance below and 1 - lapse above, whose ln likelihood is at least
-/// `least`. A threshold between two levels includes their whole gap. A side without a value is unbounded.
+/// Thresholds (relative ln size) of all ideal steps whose ln likelihood is at least `least`. An ideal step is at chance
+/// level below the threshold and at 1 - lapse above it. A threshold between two levels includes their whole gap. A side
+/// without a value is unbounded.
 struct StepExtent {
   bool any = false;
   std::optional<double> low, high;

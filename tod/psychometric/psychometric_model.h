@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The psychometric function: stable logarithms of psi and 1 - psi, and their derivatives.
+// The psychometric function: numerically stable logarithms of psi and 1 - psi, and their derivatives.
 #pragma once
 
 #include "tod/psychometric/psychometric_fit.h"
@@ -11,8 +11,8 @@ inline constexpr double min_slope = 0.1;      ///< domain of the slope b
 inline constexpr double max_slope = 50;
 inline constexpr double max_free_lapse = 0.1;  ///< domain of a free lapse
 
-/// A form at one lapse. psi = g + A H and 1 - psi = l + A (1 - H) with g = chance level, A = 1 - g - l and
-/// H = 1 - exp(-z) (size form) or exp(-z) (acuity form), z = kappa exp(u), u = +-b (ln x - ln x75); kappa(l) makes
+/// A form of the function at one lapse. psi = g + A H and 1 - psi = l + A (1 - H) with g = chance level, A = 1 - g - l
+/// and H = 1 - exp(-z) (size form) or exp(-z) (acuity form), z = kappa exp(u), u = +-b (ln x - ln x75); kappa(l) makes
 /// psi(x75) = 0.75.
 struct Link {
   PsychometricForm form = PsychometricForm::size;
@@ -24,7 +24,7 @@ struct Link {
   double d2_ln_kappa = 0;  ///< second derivative
   double sign = 1;         ///< of u: +1 size, -1 acuity
 };
-/// Precondition: `lapse` in [0, 0.1].
+/// Creates a link. Precondition: `lapse` in [0, 0.1].
 [[nodiscard]] Link make_link(PsychometricForm form, double lapse);
 
 /// ln psi and ln(1 - psi).
@@ -32,18 +32,18 @@ struct LogProbabilities {
   double right = 0, wrong = 0;
 };
 /// Computes both at u without rounding psi to 1: ln(1 - psi) is exact down to the largest double. Arguments above 700
-/// count as 700.
+/// are replaced by 700.
 [[nodiscard]] LogProbabilities log_probabilities(const Link& link, double u);
 
 /// Value and partial derivatives of ln psi or ln(1 - psi) in w = ln z and in the lapse at constant w.
 struct LogTerm {
   double value = 0, w = 0, ww = 0, l = 0, ll = 0, wl = 0;
 };
-/// Contributions of a right answer (ln psi) and of a wrong one (ln(1 - psi)).
+/// Contributions of a correct answer (ln psi) and of a wrong answer (ln(1 - psi)).
 struct AnswerTerms {
   LogTerm right, wrong;
 };
-/// Computes the contributions at u. Values above 300 count as 300, so that second derivatives times counts never
+/// Computes the contributions at u. Values above 300 are replaced by 300, so that second derivatives times counts never
 /// overflow.
 [[nodiscard]] AnswerTerms answer_terms(const Link& link, double u);
 

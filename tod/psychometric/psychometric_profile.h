@@ -9,23 +9,24 @@
 
 namespace todbench {
 
-/// Start and drops of a profile.
+/// Starting point and drops of a profile.
 struct ProfileRequest {
-  double start_t = 0;          ///< the maximum, or any place of the supremum region
-  double supremum = 0;         ///< of the log-likelihood
+  double start_t = 0;          ///< the maximum, or any place in the supremum region
+  double supremum = 0;         ///< supremum of the log-likelihood
   std::optional<double> se_t;  ///< standard error of t, for the first steps
-  LikelihoodLimits limits;     ///< decide in advance whether a side has a crossing
+  LikelihoodLimits limits;     ///< determine in advance whether a side has a crossing
   double wide_drop = 0;        ///< 2 (supremum - profile) at the outer crossing
   double narrow_drop = 0;      ///< at the inner crossing, <= wide_drop
 };
 
-/// Crossings in t, nearest to the start on each side; empty if the likelihood never falls that far.
+/// Crossings in t, nearest to the start on each side; empty if the likelihood never decreases that far.
 struct ProfileCrossings {
   struct Side {
     std::optional<double> wide, narrow;
   };
   Side below, above;
-  /// Point with a larger likelihood than ProfileRequest::supremum, if the profile meets one: maximise again from it.
+  /// Point with a likelihood above ProfileRequest::supremum, if the profile contains one: maximise again from this
+  /// point.
   std::optional<Maximum<3>> better;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fit of graded answers at many contrasts: the function of a twin, stretched in size by a polynomial of the contrast.
+// Fits graded answers at many contrasts with the function of a twin, stretched in size by a polynomial of the contrast.
 #pragma once
 
 #include <array>
@@ -25,30 +25,31 @@ struct RampAnswer {
 /// S75 at one contrast.
 struct RampValue {
   double ln_s75 = 0;
-  ClusteredVariance variance;  ///< of ln S75, over set-ups
+  ClusteredVariance variance;  ///< variance of ln S75, over set-ups
 };
 
-/// Difference of ln S75 between ramps up and down; zeros if its fit failed.
+/// Difference of ln S75 between ramps up and down; zero if the fit failed.
 struct RampDifference {
   double ln_up_over_down = 0, standard_error = 0;
   double limit = 0;  ///< critical value of |ln_up_over_down| at 1 %, two-sided
   [[nodiscard]] bool beyond() const;
 };
 
-/// Fit of P(S, dT) = F(S exp(-a(u)), dT) with a(u) = a0 + a1 u + a2 u^2, F the surface and u its contrast_bend().
-/// ln S75(dT) = ln S75 of the surface + a(u). Quasi-likelihood as in fit_twin_shape(). The stretch a(u) is constant if
-/// the u of the answers span less than 0.05, and linear if they span less than 0.3.
+/// Fit of P(S, dT) = F(S exp(-a(u)), dT) with a(u) = a0 + a1 u + a2 u^2, where F is the surface and u its
+/// contrast_bend(). ln S75(dT) = ln S75 of the surface + a(u). Quasi-likelihood as in fit_twin_shape(). The stretch
+/// a(u) is constant if the values of u of the answers span less than 0.05, and linear if they span less than 0.3.
 class RampFit {
  public:
-  /// Errors: `invalid_input` (no answers, or none that determine the stretch).
+  /// Fits the answers. Errors: `invalid_input` (no answers, or answers that do not determine the stretch).
   [[nodiscard]] static Result<RampFit> of(std::vector<RampAnswer> answers, ContrastSurface surface);
 
-  /// ln S75 at a contrast, with its variance.
+  /// Returns ln S75 at a contrast, with its variance.
   [[nodiscard]] RampValue at(double delta_t_k) const;
-  /// Stretch in ln size at a contrast.
+  /// Returns the stretch in ln size at a contrast.
   [[nodiscard]] double stretch(double delta_t_k) const;
-  /// Returns the difference of ln S75 between ramps up and down. The fit is repeated with one more parameter, which is
-  /// added to ln S75 with the factor +1/2 for ramps up and -1/2 for ramps down. If that fit fails, all members are 0.
+  /// Returns the difference of ln S75 between ramps up and down. The fit is repeated with an additional parameter,
+  /// which is added to ln S75 with the factor +1/2 for ramps up and -1/2 for ramps down. If this fit fails, all members
+  /// are 0.
   [[nodiscard]] RampDifference up_against_down() const;
 
  private:
@@ -61,7 +62,7 @@ class RampFit {
   std::vector<double> u_;  ///< of the answers
   ContrastSurface surface_;
   std::size_t powers_ = 3;      ///< parameters of the stretch
-  std::size_t parameters_ = 3;  ///< with that of the directions, the last one
+  std::size_t parameters_ = 3;  ///< includes the parameter of the directions, the last one
   std::array<double, most_parameters> value_{};
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Joint fit of two data sets with a common threshold and with separate ones.
+// Joint fit of two data sets, with a common threshold and with separate thresholds.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace todbench {
 
-/// Maxima of the summed ln likelihood, and the difference of thresholds at the separate maximum.
+/// Maxima of the summed ln likelihood, and the difference of the thresholds at the separate maximum.
 struct PairMaxima {
   double ll_separate = 0, ll_common = 0;
   double ln_ratio = 0;                ///< ln(threshold A / threshold B)
@@ -22,9 +22,9 @@ class ThresholdPair {
  public:
   ThresholdPair(std::span<const Level> a, std::span<const Level> b, const FitOptions& options);
 
-  /// Fits one slope for both sets, with a common threshold and with separate ones.
+  /// Fits one slope for both sets, with a common threshold and with separate thresholds.
   [[nodiscard]] PairMaxima shared_slope() const;
-  /// Fits a slope for each set, with a common threshold and with separate ones.
+  /// Fits one slope for each set, with a common threshold and with separate thresholds.
   [[nodiscard]] PairMaxima separate_slopes() const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Thresholds over contrast.
+// TOD curve: thresholds as a function of contrast.
 #pragma once
 
 #include <array>
@@ -16,26 +16,26 @@
 
 namespace todbench {
 
-/// Reason for graded answers, or for right and wrong ones.
+/// Reason for the kind of answers: graded or binary.
 enum class AnswersReason {
   plan,               ///< stated by the plan
   twin,               ///< graded: the model observer judges, and the function of the twin is fitted
   weibull,            ///< the error of a Weibull function exceeds the interval of graded answers
-  lapse,              ///< the plan has a lapse; graded answers are those of an observer without one
+  lapse,              ///< the plan has a lapse, but graded answers come from an observer without a lapse
   adaptive,           ///< in sessions of earlier versions: the schedule is adaptive
   grey_levels,        ///< intervals of graded answers are not validated for contrasts in grey levels
-  few_presentations,  ///< too few to estimate the scatter of graded answers
-  no_function,        ///< graded answers were taken, but there was no function of the twin for the fit
+  few_presentations,  ///< too few presentations to estimate the scatter of graded answers
+  no_function,        ///< graded answers were recorded, but the twin had no function for the fit
   person,             ///< a person answered
-  package,            ///< an enhancement package, with a Weibull function
-  moving_target,      ///< a moving target, with a Weibull function
+  package,            ///< an enhancement package, evaluated with a Weibull function
+  moving_target,      ///< a moving target, evaluated with a Weibull function
 };
 inline constexpr std::array all_answers_reasons{
     AnswersReason::plan,     AnswersReason::twin,        AnswersReason::weibull,           AnswersReason::lapse,
     AnswersReason::adaptive, AnswersReason::grey_levels, AnswersReason::few_presentations, AnswersReason::no_function,
     AnswersReason::person,   AnswersReason::package,     AnswersReason::moving_target};
 [[nodiscard]] std::string_view to_string(AnswersReason reason);
-/// Reason for a sentence: "the plan names them".
+/// Returns the reason for a sentence: "the plan names them".
 [[nodiscard]] std::string_view in_words(AnswersReason reason);
 
 /// Answers from which a threshold was fitted.
@@ -49,48 +49,48 @@ struct AnswersTaken {
 /// Answers to the triangles of one direction.
 struct DirectionAnswers {
   int trials = 0;
-  double correct = 0;  ///< sum of the probabilities, or number of right answers
-  double percent = 0;  ///< threshold over that of all directions, minus 1, in percent, to first order
+  double correct = 0;  ///< sum of the probabilities, or number of correct answers
+  double percent = 0;  ///< threshold relative to that of all directions, minus 1, in percent, to first order
 };
 
 /// Thresholds by the direction of the triangles in the picture (tod/adequacy/orientation.h).
 struct Orientations {
   std::array<DirectionAnswers, all_apexes.size()> directions{};  ///< in the order of all_apexes
-  double axes_percent = 0;     ///< threshold of up and down over that of left and right, minus 1
+  double axes_percent = 0;     ///< threshold of up and down divided by threshold of left and right, minus 1
   double axes_se_percent = 0;  ///< standard error, from the scatter over plates and mountings
   int set_ups = 0;             ///< number of plates and mountings
-  double p = 1;                ///< probability of a larger difference by chance
+  double p = 1;                ///< probability that chance causes a larger difference
 };
 
 /// One contrast of a TOD curve.
 struct TodPoint {
-  double set_delta_t_k = 0;  ///< set contrast: points are paired by it
+  double set_delta_t_k = 0;  ///< set contrast, by which points are paired
   double delta_t_k = 0;      ///< effective contrast measured by the camera (mean over trials)
-  /// Standard error of delta_t_k by contrast_error(), over its measurements (one per set-up and set-point) and their
-  /// triangles. If no triangles are recorded, it is over the measurements alone; it is then 0 for a single measurement,
-  /// whose scatter is not known (contrast_se_k()).
+  /// Standard error of delta_t_k by contrast_error(), from its measurements (one per set-up and set-point) and their
+  /// triangles. If no triangles are recorded, it comes from the measurements alone. It is then 0 for a single
+  /// measurement, whose scatter is not known (contrast_se_k()).
   double delta_t_se_k = 0;
   double delta_t_shared_se_k = 0;  ///< part of delta_t_se_k that the scatter over measurements does not contain
   int delta_t_measurements = 0;    ///< number of measurements; 0: not stated
   std::optional<double> delta_t_freedom{};  ///< degrees of freedom of that error; empty: measurements minus one
   std::vector<Level> levels;                ///< data of the fit: counts, one row per size and cluster
   PsychometricFit fit;                      ///< in mrad
-  /// Reason for a Weibull function or for that of the twin; empty: not stated.
+  /// Reason for a Weibull function or for the function of the twin; empty: not stated.
   std::optional<EstimatorReason> estimator_reason;
   std::optional<AnswersTaken> answers;            ///< empty: not stated
   std::optional<PsychometricFit> free_lapse_fit;  ///< fit of the same answers with a free lapse, as a check
   bool lapse_warning = false;             ///< the free lapse explains the data significantly better (2 ln LR > 2.71)
   std::optional<Adequacy> adequacy;       ///< findings against the threshold; empty: not examined
-  std::optional<double> direct_s75_mrad;  ///< simulated sensors only: no psychometric form assumed
+  std::optional<double> direct_s75_mrad;  ///< for simulated sensors only; does not assume a psychometric form
   std::optional<double> direct_s75_se_mrad;
-  /// S75 over the range of the observer's open parameters, low and high. It is not a confidence interval. Empty: the
+  /// S75 over the range of the observer's open parameters, low and high. This is not a confidence interval. Empty: the
   /// observer has no open parameters, or they were not varied.
   std::optional<std::pair<double, double>> s75_spread_mrad;
   /// Share of the point's trials with saturated pixels inside the window of their triangle.
   double saturated_share = 0;
-  /// Temporal noise of a pixel in counts; empty: not known, or not counted in whole numbers.
+  /// Temporal noise of a pixel in counts; empty: not known, or the values are not integer counts.
   std::optional<double> noise_counts;
-  std::optional<double> lag1_correlation;      ///< of a pixel's noise between successive frames
+  std::optional<double> lag1_correlation;      ///< correlation of a pixel's noise between successive frames
   std::optional<Orientations> orientations{};  ///< empty: not compared
 };
 
@@ -105,28 +105,28 @@ struct ContinuousPoint {
 struct TodCurve {
   std::string observer, sensor;
   std::vector<TodPoint> points;               ///< contrast decreasing
-  std::vector<ContinuousPoint> continuous{};  ///< of a ramp, contrast decreasing; empty: contrasts were settled
+  std::vector<ContinuousPoint> continuous{};  ///< curve of a ramp, contrast decreasing; empty: contrasts were settled
 };
 
-/// Smallest gain in twice the ln likelihood by which a free lapse gives a warning: 5 % for a parameter at its bound
-/// under the null hypothesis.
+/// Smallest gain in twice the ln likelihood with which a free lapse causes a warning. It corresponds to 5 % for a
+/// parameter that is at its bound under the null hypothesis.
 inline constexpr double boundary_drop = 2.705543454095404;
 
 /// Groups trials by set contrast, counts them per size and presentation, and fits each group. Intervals are clustered
-/// by presentation and by place on the plate (which shares fixed pattern); the wider one is reported. If all answers of
-/// a group are graded, it is fitted by fit_graded(), with both clusterings in one variance.
+/// by presentation and by place on the plate (because a place shares fixed pattern); the wider one is reported. If all
+/// answers of a group are graded, fit_graded() fits them, with both clusterings in one variance.
 [[nodiscard]] Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& options);
 
-/// Converts trials to right and wrong answers to one frame each.
+/// Converts trials to binary answers to one frame each.
 [[nodiscard]] std::vector<Trial> as_binary(std::span<const Trial> trials);
 
-/// Answers with their presentations and places; right and wrong ones as probabilities of 1 and 0.
+/// Returns the answers with their presentations and places. Binary answers have probabilities of 1 and 0.
 [[nodiscard]] std::vector<GradedAnswer> graded_answers(std::span<const Trial> trials);
 
-/// Whether two set contrasts count as equal: to 0.5 % of the larger.
+/// Returns whether two set contrasts are regarded as equal: to 0.5 % of the larger.
 [[nodiscard]] bool same_contrast(double a_k, double b_k);
 
-/// The point of a curve with this set contrast, the nearest of several; null if there is none.
+/// Returns the point of a curve with this set contrast, the nearest one of several; null if there is none.
 [[nodiscard]] const TodPoint* point_at(const TodCurve& curve, double set_delta_t_k);
 
 }  // namespace todbench

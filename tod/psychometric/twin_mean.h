@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mean of answers by the function of a twin, in the parameters of the search.
+// Mean of answers according to the function of a twin, in the parameters of the search.
 #pragma once
 
 #include <array>
@@ -9,19 +9,18 @@
 
 namespace todbench {
 
-/// ln size ratio, ln slope ratio, bend (per squared unit of ln size from the threshold), lapse.
+/// Parameters: ln size ratio, ln slope ratio, bend (per squared unit of ln size from the threshold), lapse.
 using TwinPlace = std::array<double, 4>;
 inline constexpr std::size_t twin_size = 0, twin_slope = 1, twin_bend = 2, twin_lapse = 3;
 
-/// Place of a fit, without a bend.
+/// Returns the parameters of a fit, without a bend.
 [[nodiscard]] TwinPlace twin_place(const TwinShapeUse& use, double lapse);
 
-/// Largest lapse at which the table contains the size with 75 % correct answers; at most max_free_lapse.
+/// Returns the largest lapse at which the table contains the size with 75 % correct answers; at most max_free_lapse.
 [[nodiscard]] double largest_twin_lapse(const TwinShape& shape);
 
-/// Mean of an answer:
-/// mu(S) = 1/4 + r (F(c + k d + e d^2) - 1/4), d = ln S - ln S75, r = 1 - lapse / (3/4), F(c) = 1/4 + 1/2 / r, so that
-/// mu(S75) = 3/4 for every lapse. Keeps a reference to the shape.
+/// Mean of an answer: mu(S) = 1/4 + r (F(c + k d + e d^2) - 1/4) with d = ln S - ln S75, r = 1 - lapse / (3/4) and F(c)
+/// = 1/4 + 1/2 / r, so that mu(S75) = 3/4 for every lapse. Keeps a reference to the shape.
 class TwinMean {
  public:
   TwinMean(const TwinShape& shape, const TwinPlace& place);
@@ -30,7 +29,7 @@ class TwinMean {
     double value = 0;
     std::array<double, 4> gradient{};  ///< per unit of each parameter
   };
-  /// Value at ln(size / mrad).
+  /// Returns the value at ln(size / mrad).
   [[nodiscard]] Value at(double ln_size) const;
 
  private:
