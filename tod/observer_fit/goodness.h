@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Test whether a fitted observer can have given a person's answers.
+// Tests whether a fitted observer could have given a person's answers.
 #pragma once
 
 #include <array>
@@ -14,13 +14,14 @@
 
 namespace todbench {
 
-/// Test statistics; each is large if the model is wrong.
+/// Test statistics. Each is large if the model is wrong.
 enum class MisfitKind {
-  contrast_and_size,  ///< number correct of each contrast and size: sum of (observed - expected)^2 / variance
-  confusion,          ///< likewise for answers by the direction of the triangle and the answered direction
-  calibration,        ///< likewise for the number correct of patches of similar predicted probability
+  contrast_and_size,  ///< number correct by contrast and size: sum of (observed - expected)^2 / variance
+  confusion,          ///< the same for answers by the direction of the triangle and the answered direction
+  calibration,        ///< the same for the number correct of patches of similar predicted probability
   surprise,           ///< (sum of -ln p of the answers - its expectation)^2 / variance
-  wrong_answers,      ///< as surprise, of wrong answers only: p of the chosen alternative given a wrong one
+  wrong_answers,      ///< as surprise, but for wrong answers only: p of the chosen alternative given that the answer is
+                      ///< wrong
 };
 inline constexpr std::array all_misfit_kinds{MisfitKind::contrast_and_size, MisfitKind::confusion,
                                              MisfitKind::calibration, MisfitKind::surprise, MisfitKind::wrong_answers};
@@ -30,20 +31,20 @@ inline constexpr std::array all_misfit_kinds{MisfitKind::contrast_and_size, Misf
 struct MisfitTest {
   double statistic = 0;
   double expected = 0;  ///< mean over the replicates
-  double p = 1;         ///< chi-squared with the mean and variance of the replicates (Satterthwaite 1946)
+  double p = 1;         ///< from chi-squared with the mean and variance of the replicates (Satterthwaite 1946)
 };
 
-/// Answers of one contrast and size.
+/// Answers at one contrast and size.
 struct AnswerCell {
   int cell = 0;
   double answers = 0, correct = 0;
-  double expected = 0, sd = 0;  ///< of the number correct under the fitted model
+  double expected = 0, sd = 0;  ///< expectation and sd of the number correct under the fitted model
 };
 
 /// Result of goodness_of().
 struct Goodness {
   std::array<MisfitTest, all_misfit_kinds.size()> tests{};  ///< by MisfitKind
-  /// Share of replicates of the fitted model whose smallest p is at most the observed one: the joint test.
+  /// Share of replicates of the fitted model whose smallest p is at most the observed one: result of the joint test.
   double p = 1;
   int replicates = 0;
   std::vector<AnswerCell> cells;
@@ -52,12 +53,12 @@ struct Goodness {
 
 /// Options of goodness_of().
 struct GoodnessOptions {
-  int replicates = 299;  ///< of the bootstrap, at least 19
+  int replicates = 299;  ///< number of bootstrap replicates, at least 19
   std::uint64_t seed = 1;
 };
 
-/// Tests a fit by parametric bootstrap: the fitted model answers the same patches and is fitted to its own answers,
-/// which gives the distribution of every statistic. Errors: `interrupted`.
+/// Tests a fit by parametric bootstrap. The fitted model answers the same patches and is then fitted to its own
+/// answers; this yields the distribution of every statistic. Errors: `interrupted`.
 [[nodiscard]] Result<Goodness> goodness_of(AnswerLattice& lattice, std::span<const PersonAnswer> answers,
                                            const PersonFit& fit, const GoodnessOptions& options, std::stop_token stop);
 

@@ -10,20 +10,20 @@
 
 namespace todbench {
 
-/// Kind of the fitted observer: meaning of its first two parameters.
+/// Kind of the fitted observer. It determines the meaning of the first two parameters.
 enum class FittedKind {
   blurred,  ///< blur_sigma_samples and internal_noise
-  eye,      ///< gain on the sensitivity of the eye, and its contrast_noise
+  eye,      ///< gain of the sensitivity of the eye, and its contrast_noise
 };
 
-/// Fitted parameters, with the names of a blurred observer. Lapse is the share of answers that do not depend on the
-/// patch and are spread evenly over the alternatives; it is not a parameter of the template observer.
+/// Fitted parameters, named as for a blurred observer. Lapse is the share of answers that do not depend on the patch
+/// and are distributed evenly over the alternatives; it is not a parameter of the template observer.
 enum class ObserverKey { blur_sigma_samples, internal_noise, sensor_noise_factor, lapse };
 inline constexpr std::array all_observer_keys{ObserverKey::blur_sigma_samples, ObserverKey::internal_noise,
                                               ObserverKey::sensor_noise_factor, ObserverKey::lapse};
 [[nodiscard]] std::string_view to_string(ObserverKey key);
 inline constexpr std::size_t observer_key_count = all_observer_keys.size();
-/// Name of a parameter of this kind of observer.
+/// Returns the name of a parameter for this kind of observer.
 [[nodiscard]] std::string_view parameter_name(ObserverKey key, FittedKind kind);
 
 /// Values of the parameters, in the order of ObserverKey.
@@ -39,7 +39,7 @@ struct ObserverLimits {
   return {{AnswerLattice::least_sigma, AnswerLattice::least_noise, 1, 0}, {AnswerLattice::most_sigma, 5, 10, 0.5}};
 }
 
-/// Coordinates of the search: logarithms of the first three parameters, the lapse itself.
+/// Coordinates of the search: logarithms of the first three parameters, and the lapse itself.
 using ObserverPlace = std::array<double, observer_key_count>;
 /// Converts values to coordinates; values below the limits are replaced by the limits.
 [[nodiscard]] ObserverPlace place_of(const ObserverValues& values, FittedKind kind = FittedKind::blurred);
@@ -50,7 +50,7 @@ using ObserverPlace = std::array<double, observer_key_count>;
 struct PersonAnswer {
   std::size_t patch = 0;  ///< index in the lattice
   int answer = 0, truth = 0;
-  int cell = 0;  ///< contrast and size, numbered by the caller: residuals are grouped by it
+  int cell = 0;  ///< contrast and size, numbered by the caller; residuals are grouped by it
 };
 
 }  // namespace todbench

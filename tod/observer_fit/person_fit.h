@@ -15,10 +15,11 @@ namespace todbench {
 
 /// Options of fit_person().
 struct PersonFitOptions {
-  ObserverValues start{0.6, 0.07, 1, 0};  ///< start of the search, and values of the parameters that are not free
+  ObserverValues start{0.6, 0.07, 1, 0};  ///< starting point of the search, and values of the parameters that are not
+                                          ///< free
   std::array<bool, observer_key_count> free{};
   enum class Intervals {
-    none,  ///< no intervals, and only a few steps from the start: for answers whose maximum is near it
+    none,  ///< no intervals, and only a few steps: for answers whose maximum is near the starting point
     profile,
   } intervals = Intervals::profile;
 };
@@ -27,8 +28,8 @@ struct PersonFitOptions {
 struct PersonFit {
   ObserverValues values{};  ///< by ObserverKey
   std::array<bool, observer_key_count> free{};
-  /// 95 %, profile likelihood (drop of 3.84 in twice ln likelihood). A side is open if the likelihood does not fall
-  /// that far within the domain. At a natural limit (factor 1, lapse 0) the side is that limit.
+  /// 95 % intervals by profile likelihood (drop of 3.84 in twice ln likelihood). A side is open if the likelihood does
+  /// not decrease that far within the domain. At a natural limit (factor 1, lapse 0) the side is that limit.
   std::array<Interval, observer_key_count> ci95{};
   /// Inverse of the expected information for ln sigma, ln n, ln f and the lapse; 0 for parameters that are not free.
   /// Empty if it is singular: the answers do not separate the parameters.
@@ -39,13 +40,13 @@ struct PersonFit {
   std::size_t answers = 0;
 };
 
-/// Correlation of two estimates; empty without a covariance, or if one is not free.
+/// Returns the correlation of two estimates; empty without a covariance, or if one of them is not free.
 [[nodiscard]] std::optional<double> correlation(const PersonFit& fit, std::size_t a, std::size_t b);
-/// Standard error of ln of the value (of the lapse itself); empty if there is none.
+/// Returns the standard error of ln of the value (of the lapse itself); empty if there is none.
 [[nodiscard]] std::optional<double> standard_error(const PersonFit& fit, std::size_t key);
 
-/// Fits the parameters by maximum likelihood from several starts. Errors: `invalid_input` (no answers, no free
-/// parameter, a start outside the domain).
+/// Fits the parameters by maximum likelihood from several starting points. Errors: `invalid_input` (no answers, no free
+/// parameter, a starting point outside the domain).
 [[nodiscard]] Result<PersonFit> fit_person(AnswerLattice& lattice, std::span<const PersonAnswer> answers,
                                            const PersonFitOptions& options);
 

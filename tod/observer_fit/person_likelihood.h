@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Likelihood of a person's answers under the template observer, given the patches that were answered.
+// Likelihood of a person's answers to given patches, according to the template observer.
 #pragma once
 
 #include <array>
@@ -11,23 +11,23 @@
 
 namespace todbench {
 
-/// Probability of each alternative and its derivatives, for one patch at one place.
+/// Probability of each alternative and its derivatives, for one patch at one place of the search.
 struct AnswerExpansion {
   std::array<double, 4> probability{};
   std::array<std::array<double, 4>, observer_key_count> slope{};
 };
 
-/// Standard deviation of the observer's own noise for a patch, relative to the contrast:
-/// sqrt(n^2 + (f^2 - 1) (q / dT)^2).
+/// Returns the standard deviation of the observer's own noise for a patch, relative to the contrast: sqrt(n^2 + (f^2 -
+/// 1) (q / dT)^2).
 [[nodiscard]] double own_noise(const AnsweredPatch& patch, const ObserverValues& values);
-/// Probabilities of the four answers of one patch: p = lapse / 4 + (1 - lapse) p_observer. Sums to 1.
+/// Returns the probabilities of the four answers to one patch: p = lapse / 4 + (1 - lapse) p_observer. The sum is 1.
 [[nodiscard]] std::array<double, 4> answer_shares(AnswerLattice& lattice, std::size_t patch,
                                                   const ObserverValues& values);
 /// Computes probabilities and derivatives at a place of the search.
 [[nodiscard]] AnswerExpansion answer_expansion(AnswerLattice& lattice, std::size_t patch, const ObserverPlace& place);
 
-/// ln likelihood of the answers, its gradient, and minus the expected information as second derivatives (for Fisher's
-/// scoring). Precondition: a lattice of four alternatives.
+/// Returns the ln likelihood of the answers, its gradient, and, as second derivatives, minus the expected information
+/// (for Fisher's scoring). Precondition: a lattice of four alternatives.
 [[nodiscard]] Expansion<observer_key_count> person_likelihood(AnswerLattice& lattice,
                                                               std::span<const PersonAnswer> answers,
                                                               const ObserverPlace& place);
