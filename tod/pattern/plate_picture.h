@@ -15,7 +15,7 @@ struct DisplayGeometry {
   double pixel_mm = 1;  ///< centre to centre, square
 };
 
-/// Draws a plate with the level `pattern` within triangles and rectangles and `ground` elsewhere; a pixel has the mean
+/// Draws a plate with the level `pattern` inside triangles and rectangles and `ground` elsewhere. A pixel has the mean
 /// over its area. The plate's origin is the middle of the display, moved by `shift_mm` (x right, y down). Errors:
 /// `invalid_input` (a cut-out outside the display, a level outside 0 to 1, a display without pixels).
 [[nodiscard]] Result<cv::Mat1d> plate_picture(const TargetPlate& mounted_plate, cv::Point2d shift_mm,

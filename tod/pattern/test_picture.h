@@ -13,13 +13,13 @@
 
 namespace todbench {
 
-/// Rows of four triangles, each orientation once a row, in an order drawn from the seed; places differ in sub-pixel
-/// phase.
+/// Rows of four triangles. Each row contains each orientation once, in an order drawn from the seed; positions differ
+/// in sub-pixel phase.
 struct TodPicture {
   std::vector<double> sizes_px;  ///< square roots of area, one row each; empty: as many as fit, in steps of 1.205
   std::uint64_t seed = 1;
 };
-/// Groups of four bars (length to width 7 : 1), upright and lying, one pair of groups for each frequency.
+/// Groups of four bars (length to width 7 : 1), one vertical and one horizontal group for each frequency.
 struct MrtdPicture {
   std::vector<double> frequencies_per_px{0.05, 0.1, 0.2, 0.3, 0.4, 0.5};
 };
@@ -27,10 +27,10 @@ struct MrtdPicture {
 struct EdgePicture {
   double angle_deg = 5;
 };
-/// A linear ramp, bright at the right; each pixel has the level at its centre, which is its mean.
+/// A linear ramp, bright on the right; each pixel has the level at its centre, which is its mean.
 struct RampPicture {};
-/// A Siemens star round the middle: wedges to the nearest border, with straight outer ends, the first one clockwise
-/// from the direction to the right.
+/// A Siemens star round the middle. The wedges extend to the nearest border and have straight outer ends; the first
+/// wedge begins clockwise from the direction to the right.
 struct SiemensPicture {
   int spokes = 36;
 };
@@ -48,28 +48,28 @@ struct PictureRequest {
   PictureKind kind;
 };
 
-/// Truth of one group of bars: `x_px`, `y_px` its middle from the picture's upper left corner.
+/// Geometry of one group of bars. `x_px`, `y_px`: its middle, measured from the picture's upper left corner.
 struct BarGroup {
   double frequency_per_px = 0, x_px = 0, y_px = 0;
   bool upright = true;  ///< the bars are parallel to y
 };
 
-/// A picture with its contents.
+/// A picture and the shapes in it.
 struct TestPicture {
   cv::Mat1d levels;   ///< 0 to 1
   TargetPlate plate;  ///< of a TOD picture: one pixel is 1 mm, the origin is the middle
   std::vector<BarGroup> bars;
 };
 
-/// Draws a test picture. Errors: `invalid_input` in one sentence (a size without room for a pattern, invalid or equal
-/// levels, a triangle that does not fit, bars or a whole star beyond half a cycle per pixel).
+/// Draws a test picture. Errors: `invalid_input` in one sentence (a picture without room for a pattern, invalid or
+/// equal levels, a triangle that does not fit, bars or a whole star beyond half a cycle per pixel).
 [[nodiscard]] Result<TestPicture> drawn_picture(const PictureRequest& request);
 
-/// Radius in pixels below which the spokes have more than half a cycle per pixel (Nyquist).
+/// Returns the radius in pixels below which the spokes have more than half a cycle per pixel (Nyquist).
 [[nodiscard]] double finest_radius_px(const SiemensPicture& star);
-/// Outline of a triangle of the plate in pixels from the upper left corner.
+/// Returns the outline of a triangle of the plate in pixels from the upper left corner.
 [[nodiscard]] Polygon outline_px(const PlateTriangle& triangle, cv::Size size);
-/// Outlines of the four bars of a group.
+/// Returns the outlines of the four bars of a group.
 [[nodiscard]] std::vector<Polygon> outlines_px(const BarGroup& group);
 
 }  // namespace todbench
