@@ -12,13 +12,13 @@
 
 namespace todbench {
 
-/// Maps a place on the plate (mm) to the picture (px).
+/// Maps a position on the plate (mm) to the picture (px).
 [[nodiscard]] inline cv::Point2d to_pixel(const cv::Matx33d& plate_to_pixel, cv::Point2d plate_mm) {
   const cv::Vec3d p = plate_to_pixel * cv::Vec3d(plate_mm.x, plate_mm.y, 1);
   return {p[0] / p[2], p[1] / p[2]};
 }
 
-/// Derivative of the mapping at a place: pixels per millimetre.
+/// Returns the derivative of the mapping at a position: pixels per millimetre.
 [[nodiscard]] inline cv::Matx22d jacobian(const cv::Matx33d& h, cv::Point2d plate_mm) {
   const cv::Vec3d p = h * cv::Vec3d(plate_mm.x, plate_mm.y, 1);
   const double x = p[0] / p[2];
@@ -27,14 +27,14 @@ namespace todbench {
          (1 / p[2]);
 }
 
-/// Outline of a triangle in the picture by the mapping, with the given apex.
+/// Returns the outline of a triangle in the picture according to the mapping, with the given apex.
 [[nodiscard]] inline Polygon outline_in_picture(const cv::Matx33d& plate_to_pixel, const PlateTriangle& t, Apex apex) {
   Polygon outline = triangle(t.size_mm, apex, t.position_mm);
   for (cv::Point2d& p : outline) p = to_pixel(plate_to_pixel, p);
   return outline;
 }
 
-/// The triangles of at least `size_mm`.
+/// Returns the triangles of at least `size_mm`.
 [[nodiscard]] inline std::vector<PlateTriangle> triangles_from(const TargetPlate& plate, double size_mm) {
   std::vector<PlateTriangle> large;
   for (const PlateTriangle& t : plate.triangles) {
@@ -43,7 +43,7 @@ namespace todbench {
   return large;
 }
 
-/// `value` with `digits` decimals.
+/// Returns `value` with `digits` decimals.
 [[nodiscard]] inline std::string fixed(double value, int digits) {
   return fmt::format("{:.{}f}", value, digits);
 }

@@ -15,7 +15,7 @@ namespace todbench {
 /// One cut-out.
 struct PlateTriangle {
   std::string name;  ///< unique on the plate, e.g. "row 2, triangle 3"
-  /// Centroid, from the middle of the plate, x right, y down, as seen by the camera in identity mounting.
+  /// Centroid relative to the middle of the plate, x right, y down, as the camera sees it in identity mounting.
   cv::Point2d position_mm;
   double size_mm = 0;  ///< square root of area
   Apex apex = Apex::up;
@@ -24,51 +24,54 @@ struct PlateTriangle {
 /// A cut-out for measures other than TOD: an edge or a bar.
 struct PlateRectangle {
   std::string name;         ///< unique on the plate
-  cv::Point2d position_mm;  ///< of its middle, as for a triangle
+  cv::Point2d position_mm;  ///< position of its middle, as for a triangle
   cv::Size2d size_mm;       ///< before rotation
-  double angle_deg = 0;     ///< rotation, clockwise
+  double angle_deg = 0;     ///< clockwise rotation
 };
-/// Corners of a rectangle, clockwise from the one that is top left before rotation.
+/// Returns the corners of a rectangle, clockwise from the corner that is top left before rotation.
 [[nodiscard]] Polygon outline_mm(const PlateRectangle& rectangle);
 
 /// Four cut-outs with spaces of the same width: a square wave of 1 / (2 bar_mm) cycles per millimetre.
 struct PlateBars {
   std::string name;         ///< unique on the plate
-  cv::Point2d position_mm;  ///< of the middle of the group, as for a triangle
+  cv::Point2d position_mm;  ///< position of the middle of the group, as for a triangle
   double bar_mm = 0;        ///< width of a bar and of a space
-  double length_mm = 0;     ///< of a bar
-  double angle_deg = 0;     ///< from x to the direction across the bars, clockwise
+  double length_mm = 0;     ///< length of a bar
+  double angle_deg = 0;     ///< clockwise angle from x to the direction across the bars
 };
 
-/// How the plate is held. A mounting permutes places *and* apex labels, which cancels effects of memory and asymmetry.
+/// Orientation in which the plate is held. A mounting permutes places *and* apex labels, which cancels effects of
+/// memory and asymmetry.
 enum class Mounting { identity, rotated_180, mirrored_horizontally, mirrored_vertically };
 inline constexpr std::array all_mountings{Mounting::identity, Mounting::rotated_180, Mounting::mirrored_horizontally,
                                           Mounting::mirrored_vertically};
 [[nodiscard]] std::string_view to_string(Mounting mounting);
 [[nodiscard]] std::optional<Mounting> mounting_from(std::string_view name);
 
-/// A plate as stated by its drawing. The truth about every triangle comes from here, never from the image.
+/// A plate according to its drawing. The truth about every triangle comes from here, never from the image.
 struct TargetPlate {
   std::string name;
   std::string description;
   double width_mm = 0, height_mm = 0;
   std::vector<PlateTriangle> triangles;
-  Mounting mounting = Mounting::identity;    ///< of the stated places and apexes; set by mounted(), never by a file
-  std::vector<PlateRectangle> rectangles{};  ///< without trials
-  std::vector<PlateBars> bars{};             ///< without trials
+  Mounting mounting = Mounting::identity;    ///< mounting of the stated places and apexes; set by mounted(), never by a
+                                             ///< file
+  std::vector<PlateRectangle> rectangles{};  ///< not used in trials
+  std::vector<PlateBars> bars{};             ///< not used in trials
 };
 
-/// Rectangles of a plate, then the bars of its groups one by one ("NAME, bar 1").
+/// Returns the rectangles of a plate, followed by the single bars of its groups ("NAME, bar 1").
 [[nodiscard]] std::vector<PlateRectangle> straight_cut_outs(const TargetPlate& plate);
 
 /// Checks a plate. Errors: `invalid_input` (an empty plate, a size that is not positive, a repeated name, or a cut-out
 /// that leaves the plate or touches another).
 [[nodiscard]] Result<void> validate(const TargetPlate& plate);
 
-/// The mounting that results from both, in either order (the Klein four-group: each is its own inverse).
+/// Returns the mounting that results from both, in either order (Klein four-group: each mounting is its own inverse).
 [[nodiscard]] Mounting combined(Mounting first, Mounting second);
 
-/// The plate as the camera sees it in a mounting: places and apexes transformed, names kept, `mounting` combined.
+/// Returns the plate as the camera sees it in a mounting: places and apexes transformed, names unchanged, `mounting`
+/// combined.
 [[nodiscard]] TargetPlate mounted(const TargetPlate& plate, Mounting mounting);
 [[nodiscard]] Apex mounted(Apex apex, Mounting mounting);
 
