@@ -10,21 +10,21 @@
 
 namespace todbench {
 
-/// Additional interface of a Target that shows a black body at an absolute temperature. One thread at a time, that of
+/// Additional interface of a Target that shows a black body at an absolute temperature. Use it only from the thread of
 /// the Target.
 class AbsoluteTarget {
  public:
   virtual ~AbsoluteTarget() = default;
-  /// Lowest and highest temperature. Errors: `invalid_input` (the black body has no absolute set-point, or its reading
-  /// is in another unit than its table states), `disconnected`, `interrupted`.
+  /// Returns the lowest and the highest temperature. Errors: `invalid_input` (the black body has no absolute set-point,
+  /// or its reading has a different unit than its table states), `disconnected`, `interrupted`.
   [[nodiscard]] virtual Result<std::array<double, 2>> temperatures_k(std::stop_token stop) = 0;
-  /// As Target::present() with the black body at `temperature_k`; `state.delta_t_k` is ignored. The reading is
+  /// Same as Target::present(), with the black body at `temperature_k`; `state.delta_t_k` is ignored. The reading is
   /// PresentedTarget::black_body_temperature_k.
   [[nodiscard]] virtual Result<PresentedTarget> present_temperature(const TargetState& state, double temperature_k,
                                                                     std::stop_token stop) = 0;
 };
 
-/// The same target if it implements AbsoluteTarget, else null. Lives as long as the target.
+/// Returns the same target if it implements AbsoluteTarget, otherwise null. The pointer is valid as long as the target.
 [[nodiscard]] inline AbsoluteTarget* absolute_target(Target& target) {
   return dynamic_cast<AbsoluteTarget*>(&target);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps that an operator carries out to set the target to a state, with their values. The user interface formulates
-// the sentences.
+// Steps by which an operator sets the target to a state, with their values. The user interface formulates the
+// sentences.
 #pragma once
 
 #include <functional>
@@ -16,38 +16,38 @@
 
 namespace todbench {
 
-/// Puts a plate into the holder.
+/// Step: put a plate into the holder.
 struct PutInPlate {
   std::string plate;
   Mounting mounting = Mounting::identity;
   bool operator==(const PutInPlate&) const = default;
 };
 
-/// Changes the mounting of the plate that is in the holder.
+/// Step: change the mounting of the plate in the holder.
 struct Remount {
   Mounting mounting = Mounting::identity;
   bool operator==(const Remount&) const = default;
 };
 
-/// Sets the contrast of the black body.
+/// Step: set the contrast of the black body.
 struct SetContrast {
   double delta_t_k = 0;  ///< black body minus plate
   bool operator==(const SetContrast&) const = default;
 };
 
-/// Moves the plate by about this distance; the actual distance is measured.
+/// Step: move the plate by about this distance. The actual distance is measured.
 struct MoveSlightly {
   cv::Point2d by_mm;  ///< as the camera sees the plate, x right, y down
   bool operator==(const MoveSlightly&) const = default;
 };
 
-/// Brings an object much warmer than the plate into the picture, next to the plate, or takes it out.
+/// Step: bring an object much warmer than the plate into the picture, next to the plate, or remove it.
 struct MoveHotBar {
   bool in = true;
   bool operator==(const MoveHotBar&) const = default;
 };
 
-/// The picture contradicts the last request: its steps follow again.
+/// Notice that the picture contradicts the last request, whose steps follow again.
 struct CheckAgain {
   std::string reason;
   bool operator==(const CheckAgain&) const = default;
@@ -56,7 +56,7 @@ struct CheckAgain {
 /// One step of a request.
 using OperatorStep = std::variant<PutInPlate, Remount, SetContrast, MoveSlightly, MoveHotBar, CheckAgain>;
 
-/// One request to the operator, to be done in the order of its steps.
+/// One request to the operator, whose steps are to be carried out in order.
 struct OperatorRequest {
   std::vector<OperatorStep> steps;  ///< empty: no action needed
   bool operator==(const OperatorRequest&) const = default;
@@ -69,11 +69,12 @@ enum class OperatorAnswer { done, stop };
 /// (at once when stop is requested), `disconnected` (the operator can no longer answer).
 using AskOperator = std::function<Result<OperatorAnswer>(const OperatorRequest& request, const std::stop_token& stop)>;
 
-/// Differences between two states; all steps if the last state is not known. A move is requested only if nothing else
-/// changes, because touching the plate moves it.
+/// Returns the differences between two states; without a last state, plate and contrast are requested. A move is
+/// requested only if no other change is needed, because touching the plate moves it.
 [[nodiscard]] OperatorRequest request_between(const std::optional<TargetState>& last, const TargetState& next);
 
-/// The step as a request, without a capital and a full stop: "set the black body to +2.000 K against the plate ...".
+/// Returns the step as a request, without initial capital and full stop: "set the black body to +2.000 K against the
+/// plate ...".
 [[nodiscard]] std::string sentence(const OperatorStep& step);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A target whose contrast steps while the camera records.
+// A target whose contrast steps while the camera records frames.
 #pragma once
 
 #include <stop_token>
@@ -8,13 +8,13 @@
 
 namespace todbench {
 
-/// Additional interface of a Target whose steps begin on command and end at once. Without it, present() makes the step
-/// and returns when it has settled. Called on the thread of the Target only.
+/// Additional interface of a Target whose steps begin on command and are instantaneous. A target without it makes the
+/// step in present(), which returns after settling. Use it only from the thread of the Target.
 class SteppingTarget {
  public:
   virtual ~SteppingTarget() = default;
-  /// Steps from the presented state to another contrast, at a random time within the next frame. The camera cannot
-  /// predict it. Returns before the step. Errors: `invalid_input` (a contrast that it cannot show), `interrupted`.
+  /// Steps from the presented state to another contrast, at a random time within the next frame that the camera cannot
+  /// predict. Returns before the step. Errors: `invalid_input` (a contrast that it cannot show), `interrupted`.
   [[nodiscard]] virtual Result<void> step_to(double delta_t_k, std::stop_token stop) = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The target in front of the camera: instruments, a simulated scene, or an operator's hand.
+// The target in front of the camera: instruments, a simulated scene, or a bench operated by hand.
 #pragma once
 
 #include <opencv2/core/types.hpp>
@@ -18,7 +18,7 @@ namespace todbench {
 /// Contrast for which a target waits before a presentation.
 enum class ContrastWait {
   settled,      ///< reached and stable
-  held,         ///< reached and stable, and measured in the frames: the reference for a contrast that changes
+  held,         ///< reached, stable, and measured in the frames: the reference for a contrast that changes
   within_band,  ///< within the settling band of the set-point and changing slowly; measured in the frames
   none,         ///< still changing; measured in the frames
 };
@@ -28,8 +28,8 @@ struct TargetState {
   std::string plate;  ///< name of the TargetPlate
   Mounting mounting = Mounting::identity;
   double delta_t_k = 0;        ///< set-point of triangle minus surround; the sign is the polarity
-  cv::Point2d shift_mm{0, 0};  ///< of the plate in its own plane, as seen by the camera, x right, y down
-  /// Not settled: each presentation has the contrast of its own frames.
+  cv::Point2d shift_mm{0, 0};  ///< shift of the plate in its own plane, as the camera sees it, x right, y down
+  /// Contrast to wait for. If it is not `settled`, each presentation has the contrast measured in its own frames.
   ContrastWait wait = ContrastWait::settled;
   /// Set contrast of the point of the curve to which the answers belong; empty: `delta_t_k`.
   std::optional<double> point_delta_t_k{};
@@ -39,8 +39,8 @@ struct TargetState {
 /// State that an instrument reports once it is stable.
 struct PresentedTarget {
   TargetState state;                               ///< as reached
-  std::optional<double> plate_temperature_k;       ///< of the surround, if a sensor reports it
-  std::optional<double> black_body_temperature_k;  ///< behind the cut-outs
+  std::optional<double> plate_temperature_k;       ///< temperature of the surround, if a sensor reports it
+  std::optional<double> black_body_temperature_k;  ///< temperature behind the cut-outs
   double settling_s = 0;                           ///< time spent waiting
   bool operator==(const PresentedTarget&) const = default;
 };
@@ -48,25 +48,26 @@ struct PresentedTarget {
 /// Capabilities of a target.
 struct TargetCapabilities {
   std::string description;  ///< instruments with their serial numbers, for the report
-  /// False: an operator moves the plate slightly, and registration measures the sub-pixel phases.
+  /// If false, an operator moves the plate slightly, and registration measures the sub-pixel phases.
   bool sets_shift = false;
 };
 
-/// Brings a state in front of the camera. One thread at a time.
+/// Presents states of a target to the camera. One thread at a time.
 class Target {
  public:
   virtual ~Target() = default;
   [[nodiscard]] virtual const TargetCapabilities& capabilities() const = 0;
-  /// Returns when the state is reached and stable, or when `stop` is requested (`interrupted`, within a second).
-  /// Errors: `timeout` (does not settle), `disconnected`, `not_found`, `invalid_input` (a state it cannot show).
+  /// Presents a state. Returns when the state is reached and stable, or when `stop` is requested (`interrupted`, within
+  /// a second). Errors: `timeout` (does not settle), `disconnected`, `not_found`, `invalid_input` (a state that it
+  /// cannot show).
   [[nodiscard]] virtual Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) = 0;
-  /// Called if the frames contradict the last report of present(), with the reason. True: present() requests the state
-  /// again, because manual changes can fail; the same presentation is then repeated. False: the contradiction ends the
-  /// run.
+  /// Called with the reason if the frames contradict the last report of present(). Returns true if present() requests
+  /// the state again, because manual changes can fail; the same presentation is then repeated. Returns false if the
+  /// contradiction ends the run.
   [[nodiscard]] virtual bool asks_again(const std::string& /*reason*/) { return false; }
-  /// The same target if it can run, else null. Lives as long as the target.
+  /// Returns the same target if it can run, otherwise null. The pointer is valid as long as the target.
   [[nodiscard]] virtual MovingTarget* moving() { return nullptr; }
-  /// The same target if it can step at once, else null. Lives as long as the target.
+  /// Returns the same target if it can step instantly, otherwise null. The pointer is valid as long as the target.
   [[nodiscard]] virtual SteppingTarget* stepping() { return nullptr; }
 };
 

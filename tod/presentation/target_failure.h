@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Failures of the target, distinguished from failures of the camera.
+// Failures of the target, as distinct from failures of the camera.
 #pragma once
 
 #include <string_view>
@@ -11,14 +11,14 @@ namespace todbench {
 /// Subject of a failure of the target. Keys of the plan's section [target] begin with the same word.
 inline constexpr std::string_view target_subject = "target";
 
-/// The failing side "DOING: CAUSE" with the target as its subject, unless the cause names another one.
+/// Returns the failing side "DOING: CAUSE" with the target as its subject, unless the cause has another subject.
 [[nodiscard]] inline tl::unexpected<Error> target_failure(std::string_view doing, const Error& cause) {
   Error error = with_context(doing, cause);
   if (!error.key) error.key = ErrorKey{std::string(target_subject), cause.message};
   return tl::unexpected<Error>(std::move(error));
 }
 
-/// Whether the target, not the camera, is the subject of a failure.
+/// Returns whether the target, and not the camera, is the subject of a failure.
 [[nodiscard]] inline bool is_target_failure(const Error& error) {
   return error.key && std::string_view(error.key->name).starts_with(target_subject);
 }
