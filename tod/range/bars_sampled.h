@@ -7,13 +7,14 @@
 
 namespace todbench {
 
-/// Four bars of width 1 / (2 f) with equal spaces, contrast 1, their middle at 0, after a real transfer function along
-/// the axis across them. Immutable, thread-safe.
+/// Four bars of width 1 / (2 f) with equal spaces, contrast 1 and their middle at 0, after a real transfer function
+/// along the axis across them. Immutable, thread-safe.
 class BlurredBars {
  public:
-  /// `transfer`: function of the frequency in cycles per pitch, even and 1 at 0; taken as 0 above `band_per_pitch`.
+  /// Computes the bars. `transfer`: function of the frequency in cycles per pitch, even and 1 at 0; regarded as 0 above
+  /// `band_per_pitch`.
   BlurredBars(double frequency_per_pitch, const std::function<double(double)>& transfer, double band_per_pitch);
-  /// The value at a place in pitches, to about 1e-12 within the pattern.
+  /// Returns the value at a position in pitches, accurate to about 1e-12 within the pattern.
   [[nodiscard]] double at(double x_pitch) const;
   [[nodiscard]] double frequency_per_pitch() const { return frequency_; }
 
@@ -22,18 +23,18 @@ class BlurredBars {
   std::vector<double> node_frequency_, node_weight_;
 };
 
-/// Modulation after sampling: mean over bars of the largest sample within max(w / 2, 1 / 2) of a bar's centre, minus
-/// mean over gaps of the smallest one.
+/// Modulation after sampling: mean over the bars of the largest sample within max(w / 2, 1 / 2) of a bar's centre,
+/// minus the mean over the gaps of the smallest sample.
 struct BarModulation {
   double best = 0, mean = 0, worst = 0;  ///< over the phases
-  double best_phase_pitch = 0;           ///< of the lattice against the middle of the pattern
+  double best_phase_pitch = 0;           ///< position of the lattice relative to the middle of the pattern
   int bars_separated_at_best = 1;        ///< 1 + number of gaps that are lower than both neighbours
-  double share_of_four = 0;              ///< share of the phases that show four bars
+  double share_of_four = 0;              ///< share of the phases at which four bars are separated
 };
 /// Computes the modulation at the phases (i + 1/2) / phases - 1/2 pitch. Precondition: phases >= 1.
 [[nodiscard]] BarModulation bar_modulation(const BlurredBars& bars, int phases = 64);
-/// Same for any profile over the place in pitches, for example a measured one; it is evaluated up to 7 / (4 f) + 1 / 2
-/// from the middle.
+/// Same for any profile as a function of the position in pitches, for example a measured one. It is evaluated up to 7 /
+/// (4 f) + 1 / 2 from the middle.
 [[nodiscard]] BarModulation bar_modulation(const std::function<double(double)>& profile, double frequency_per_pitch,
                                            int phases = 64);
 

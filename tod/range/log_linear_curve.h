@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A threshold over frequency (MRTD or contrast threshold function) as points with linear interpolation of its
-// logarithm.
+// A threshold as a function of frequency (MRTD or contrast threshold function), given by points with linear
+// interpolation of its logarithm.
 #pragma once
 
 #include <optional>
@@ -17,20 +17,21 @@ struct CurvePoint {
   double value = 0;      ///< > 0
 };
 
-/// ln(value) is linear in frequency between points: exact for a exp(b f). Undefined outside the points. Immutable.
+/// A curve whose ln(value) is linear in frequency between points: exact for a exp(b f). Undefined outside the points.
+/// Immutable.
 class LogLinearCurve {
  public:
-  /// Errors: `invalid_input` in one sentence (fewer than two points, frequencies that do not increase, values that are
-  /// not positive and finite). `what`: name of the curve in messages, "MRTD".
+  /// Creates a curve. `what`: name of the curve in messages, "MRTD". Errors: `invalid_input` in one sentence (fewer
+  /// than two points, frequencies that do not increase, values that are not positive and finite).
   [[nodiscard]] static Result<LogLinearCurve> of(std::span<const CurvePoint> points, std::string_view what);
 
   [[nodiscard]] std::span<const CurvePoint> points() const { return points_; }
-  /// Value at a frequency; empty outside the points.
+  /// Returns the value at a frequency; empty outside the points.
   [[nodiscard]] std::optional<double> at(double frequency) const;
-  /// The highest frequency whose value is at most `value`; empty if every point lies above.
+  /// Returns the highest frequency whose value is at most `value`; empty if all points lie above.
   [[nodiscard]] std::optional<double> highest_frequency_at(double value) const;
-  /// Integral of sqrt(value / curve) over all frequencies at which the curve lies below `value`, in closed form between
-  /// points; 0 if it lies above everywhere.
+  /// Returns the integral of sqrt(value / curve) over all frequencies at which the curve lies below `value`, in closed
+  /// form between points; 0 if the curve lies above everywhere.
   [[nodiscard]] double root_excess_integral(double value) const;
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a TOD curve to the range at which a target is identified.
+// Predicts the range at which a target is identified, from a TOD curve.
 #pragma once
 
 #include <optional>
@@ -22,7 +22,7 @@ struct TodThreshold {
   double delta_t_k = 0;    ///< magnitude, > 0
   double s75_mrad = 0;     ///< > 0
   Interval s75_ci95_mrad;  ///< a side without a value is open
-  /// Magnitude of the set contrast of `delta_t_k`: the name of this point; 0: not known.
+  /// Magnitude of the set contrast of `delta_t_k`, which identifies this point; 0: not known.
   double set_delta_t_k = 0;
   std::optional<Adequacy> adequacy{};  ///< findings against the threshold; empty: not examined
   /// S75 over the open parameters of an observer with an eye, low and high; empty: no open parameters, or not varied.
@@ -32,17 +32,17 @@ struct TodThreshold {
 /// Target and air of a prediction. Signal and criterion as in Bijl, Hogervorst and Vos (EO-VISTA), 4.2.3.
 struct RangeTask {
   double size_m = 0;                   ///< square root of the projected area, > 0
-  double delta_t_k = 0;                ///< contrast at the target; only the magnitude counts
-  double m75 = 5.1;                    ///< M at which 75 % are correct, > 0; 5.1: small craft, side view
-  double extinction_per_km = 0;        ///< apparent contrast = contrast times exp(-extinction range), >= 0
-  std::optional<Transmittance> air{};  ///< replaces the extinction, which then is 0
+  double delta_t_k = 0;                ///< contrast at the target; only the magnitude matters
+  double m75 = 5.1;                    ///< M at which 75 % of the answers are correct, > 0; 5.1: small craft, side view
+  double extinction_per_km = 0;        ///< >= 0; the apparent contrast is the contrast times exp(-extinction range)
+  std::optional<Transmittance> air{};  ///< replaces the extinction, which is then 0
 };
 
-/// M75 = 0.6 V50: V50 = 8.5 and M75 = 5.1 belong together for small craft in side view (EO-VISTA, 4.2.3).
+/// Returns M75 = 0.6 V50. V50 = 8.5 and M75 = 5.1 correspond for small craft in side view (EO-VISTA, 4.2.3).
 [[nodiscard]] double m75_from_v50(double v50);
 
-/// Probability of a correct identification at M / M75: the target transfer probability function
-/// P = x^E / (1 + x^E), E = 1.51 + 0.24 x, x = V / V50, scaled so that P(1) = 0.75. It has no guessing term.
+/// Returns the probability of a correct identification at M / M75: the target transfer probability function P = x^E /
+/// (1 + x^E), E = 1.51 + 0.24 x, x = V / V50, scaled so that P(1) = 0.75. It has no guessing term.
 [[nodiscard]] double identification_probability(double m_over_m75);
 
 /// Returns 1, 2 or 5 times a power of ten, at most `value`.
@@ -58,21 +58,21 @@ struct RangePoint {
 
 /// Result of predict_range().
 struct RangePrediction {
-  std::optional<double> r75_m;  ///< empty if the target line does not meet the TOD curve
+  std::optional<double> r75_m;  ///< empty if the target line does not intersect the TOD curve
   Interval r75_ci95_m;          ///< from the intervals of the thresholds
-  /// R75 at both ends of the spreads of the thresholds, low and high. It is not a confidence interval. Empty: a
-  /// threshold has no spread, or an end has no range; a note gives the reason.
+  /// R75 at both ends of the spreads of the thresholds, low and high. This is not a confidence interval. Empty: a
+  /// threshold has no spread, or an end has no range; a note states the reason.
   std::optional<std::pair<double, double>> r75_spread_m{};
-  std::string reason;              ///< why there is no r75_m, in a sentence; else empty
+  std::string reason;              ///< a sentence with the reason why there is no r75_m; otherwise empty
   std::vector<std::string> notes;  ///< assumptions of this prediction
-  /// Findings of the thresholds that determine the range and its interval, each with its contrast in the sentence;
-  /// empty if none of these thresholds was examined.
+  /// Findings against the thresholds that determine the range and its interval. Each sentence contains the contrast.
+  /// Empty if none of these thresholds was examined.
   std::optional<Adequacy> adequacy;
   std::vector<RangePoint> curve;  ///< range increasing
 };
 
-/// Thresholds of a curve that have a value; if the curve has both polarities, those of the target's polarity. `notes`:
-/// omissions and assumptions.
+/// Thresholds of a curve that have a value. If the curve has both polarities, only those with the target's polarity are
+/// included. `notes`: omissions and assumptions.
 struct ThresholdSelection {
   std::vector<TodThreshold> thresholds;
   std::vector<std::string> notes;
@@ -80,24 +80,24 @@ struct ThresholdSelection {
 /// Selects the thresholds of a curve for a target.
 [[nodiscard]] ThresholdSelection thresholds_of(const TodCurve& curve, double target_delta_t_k);
 
-/// Acuity 1 / S75 in 1/mrad at a contrast. ln acuity is linear in ln contrast between neighbouring thresholds and
-/// constant above the highest contrast; the result is empty below the lowest, without extrapolation towards noise.
-/// Preconditions: thresholds sorted by contrast, not empty.
+/// Returns the acuity 1 / S75 in 1/mrad at a contrast. ln acuity is linear in ln contrast between neighbouring
+/// thresholds and constant above the highest contrast. Empty below the lowest contrast, because it is not extrapolated
+/// towards the noise. Preconditions: thresholds sorted by contrast, not empty.
 [[nodiscard]] std::optional<double> interpolated_acuity_per_mrad(std::span<const TodThreshold> sorted,
                                                                  double delta_t_k);
 
-/// Returns the contrast at which the curve is read for a target. If points have this set or effective contrast
-/// (same_contrast(), as in a comparison of curves), it is that of the nearest of these points; otherwise the contrast
-/// itself. Points without a set contrast are not matched.
+/// Returns the contrast at which the curve is evaluated for a target. If points have this set or effective contrast
+/// (same_contrast(), as in a comparison of curves), it is the effective contrast of the nearest of these points.
+/// Otherwise it is the contrast itself. Points without a set contrast are not considered.
 [[nodiscard]] double contrast_on_curve(std::span<const TodThreshold> thresholds, double delta_t_k);
 
-/// Solves M(R) = (size / R) acuity(contrast tau(R)) = M75 for the smallest R; tau is exp(-extinction R) or that of the
-/// air. The interval contains the R at which M75 is within the 95 % interval of M(R); errors of neighbouring thresholds
-/// count as independent. The target's contrast is that of contrast_on_curve(). Errors: `invalid_input` (a parameter out
-/// of its range, both extinction and air, no thresholds, thresholds that are not positive and finite, or two at one
-/// contrast).
+/// Solves M(R) = (size / R) acuity(contrast tau(R)) = M75 for the smallest R; tau is exp(-extinction R) or the
+/// transmittance of the air. The interval contains the R at which M75 is within the 95 % interval of M(R), for
+/// independent errors of neighbouring thresholds. The target's contrast is converted by contrast_on_curve(). Errors:
+/// `invalid_input` (a parameter out of its range, both extinction and air, no thresholds, thresholds that are not
+/// positive and finite, or two at one contrast).
 [[nodiscard]] Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, const RangeTask& task);
-/// Computes one range; contrast 0 beyond the end of the air's table. Errors: as predict_range().
+/// Computes one range. The contrast is 0 beyond the end of the air's table. Errors: as predict_range().
 [[nodiscard]] Result<RangePoint> range_point(std::span<const TodThreshold> thresholds, const RangeTask& task,
                                              double range_m);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a TOD curve to the frequencies of four bars with the same threshold, by an empirical function.
+// Converts a TOD curve to the frequencies of four bars with the same threshold, by an empirical function.
 #pragma once
 
 #include <optional>
@@ -15,24 +15,24 @@ namespace todbench {
 
 /// A transfer f = k A from the acuity A = 1 / S75 to the frequency f of four bars at the same contrast. k is a sigmoid
 /// of ln(A / A0) between two levels; A0 is the acuity at the highest contrast of the curve, its asymptote. A published
-/// parameter set is never changed: a change gets a new name.
+/// parameter set is never changed; a change gets a new name.
 struct TodTransfer {
-  std::string_view name;            ///< versioned
-  std::string_view observer;        ///< who judged triangles and bars; the transfer holds for no other
-  std::string_view source;          ///< imagers, observer and definition of the bars' threshold, in a phrase
+  std::string_view name;      ///< versioned
+  std::string_view observer;  ///< observer who judged triangles and bars; the transfer is valid only for this observer
+  std::string_view source;    ///< a phrase with imagers, observer and definition of the bars' threshold
   double ln_low = 0, ln_high = 0;   ///< ln k far below and far above `ln_centre`
-  double ln_centre = 0;             ///< ln(A / A0) in the middle between both levels
-  double ln_width = 1;              ///< of the transition, > 0
+  double ln_centre = 0;             ///< ln(A / A0) midway between the two levels
+  double ln_width = 1;              ///< width of the transition, > 0
   double least = 0;                 ///< lowest studied A / A0
-  double asymptote_over_noise = 0;  ///< contrast over the noise per sample at which a curve has reached its asymptote
-  double half_width_ln = 0;         ///< of the 95 % interval of ln f for an imager that was not studied
-  /// Strongest edge filter of the camera (SensorSpec::edge_boost) for which the transfers hold.
+  double asymptote_over_noise = 0;  ///< (contrast / noise per sample) at which a curve has reached its asymptote
+  double half_width_ln = 0;         ///< half-width of the 95 % interval of ln f for an imager that was not studied
+  /// Strongest edge filter of the camera (SensorSpec::edge_boost) for which the transfers are valid.
   static constexpr double highest_edge_boost = 0.2;
 };
 
 /// Returns the transfers in their order of publication.
 [[nodiscard]] std::span<const TodTransfer> tod_transfers();
-/// Returns the transfer of this name; `invalid_input` with the known names.
+/// Returns the transfer of this name. Error: `invalid_input` with the known names.
 [[nodiscard]] Result<TodTransfer> tod_transfer_named(std::string_view name);
 
 /// Returns k for A / A0 > 0.
@@ -40,12 +40,12 @@ struct TodTransfer {
 
 /// A TOD curve as frequencies of bars.
 struct TransferredCurve {
-  /// The member s75_mrad is 1 / f. Intervals join those of S75 and of A0; the error of the transfer, which all points
-  /// share, is not in them (TodTransfer::half_width_ln).
+  /// The member s75_mrad is 1 / f. Intervals combine those of S75 and of A0. They do not include the error of the
+  /// transfer, which all points share (TodTransfer::half_width_ln).
   std::vector<TodThreshold> points;
-  std::vector<std::string> notes;  ///< omitted thresholds, a sentence each
+  std::vector<std::string> notes;  ///< one sentence for each omitted threshold
 };
-/// Transfers every threshold. Thresholds below the studied range of acuities are omitted, so that the curve begins at a
+/// Transfers every threshold. Thresholds below the studied range of acuities are omitted, so the curve begins at a
 /// higher contrast. `noise_k`: temporal noise per sample. Errors: `invalid_input` (no threshold, noise not above 0, a
 /// highest contrast that does not reach the asymptote).
 [[nodiscard]] Result<TransferredCurve> transferred(std::span<const TodThreshold> thresholds,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Transmittance of the air over range: by a table, by a spectrum, or by one coefficient.
+// Transmittance of the air as a function of range: from a table, a spectrum, or one coefficient.
 #pragma once
 
 #include <optional>
@@ -16,29 +16,31 @@ struct TransmittancePoint {
   double transmittance = 1;  ///< 0 to 1
 };
 
-/// Band transmittance over range. The mean over a band is not exponential: strong lines are absorbed first, and the
-/// effective extinction -ln(tau) / R falls with range. Immutable, thread-safe.
+/// Band transmittance as a function of range. The mean over a band is not exponential: strong lines are absorbed first,
+/// and the effective extinction -ln(tau) / R decreases with range. Immutable, thread-safe.
 class Transmittance {
  public:
-  /// Transmittance exp(-K R).
+  /// Returns the transmittance exp(-K R).
   [[nodiscard]] static Transmittance beer_lambert(double extinction_per_km);
-  /// Interpolates rows with range increasing and transmittance not increasing; a row at 0 m has 1. Between rows ln(-ln
-  /// tau) is linear in ln R, and continues so below the first row towards tau = 1; next to a row of exactly 1, -ln tau
-  /// is linear in R. Rows below 1e-8 are dropped, because programs that write tables have a floor there. Undefined
-  /// beyond the last row. Errors: `invalid_input` in one sentence (no rows, fewer than two usable ones above 0 m,
-  /// unsorted or repeated ranges, a transmittance outside 0 to 1 or one that increases).
+  /// Interpolates rows in which range increases and transmittance does not increase; a row at 0 m has 1. Between rows
+  /// ln(-ln tau) is linear in ln R, and it continues below the first row towards tau = 1. Next to a row of exactly 1,
+  /// -ln tau is linear in R. Rows below 1e-8 are dropped, because programs that write tables have a lower limit there.
+  /// Undefined beyond the last row. Errors: `invalid_input` in one sentence (no rows, fewer than two usable ones above
+  /// 0 m, unsorted or repeated ranges, a transmittance that is outside 0 to 1 or increases).
   [[nodiscard]] static Result<Transmittance> of_table(std::span<const TransmittancePoint> rows);
-  /// The mean of exp(-k_i R) with weights: Beer and Lambert at every wavelength. Exact at every range. Preconditions:
-  /// as many weights as extinctions, at least one; weights >= 0 and not all 0, extinctions >= 0, all finite.
+  /// Returns the weighted mean of exp(-k_i R): Beer and Lambert at every wavelength. Exact at every range.
+  /// Preconditions: as many weights as extinctions, at least one; weights >= 0 and not all 0, extinctions >= 0, all
+  /// finite.
   [[nodiscard]] static Transmittance of_spectrum(std::vector<double> weights, std::vector<double> extinction_per_km);
 
-  /// Optical depth -ln tau; empty beyond end_m(). Precondition: range_m >= 0.
+  /// Returns the optical depth -ln tau; empty beyond end_m(). Precondition: range_m >= 0.
   [[nodiscard]] std::optional<double> optical_depth(double range_m) const;
-  /// Transmittance tau; empty beyond end_m().
+  /// Returns the transmittance tau; empty beyond end_m().
   [[nodiscard]] std::optional<double> at(double range_m) const;
-  /// The last range of the table; infinite without a table.
+  /// Returns the last range of the table; infinite without a table.
   [[nodiscard]] double end_m() const;
-  /// The same air with every optical depth multiplied: effect of an error of the extinction. Precondition: factor >= 0.
+  /// Returns the same air with every optical depth multiplied, for the effect of an error of the extinction.
+  /// Precondition: factor >= 0.
   [[nodiscard]] Transmittance with_depth_times(double factor) const;
 
  private:
