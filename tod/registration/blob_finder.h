@@ -7,16 +7,16 @@
 
 namespace todbench {
 
-/// A spot that stands out from its surround.
+/// A compact spot that is warmer than its surround.
 struct Blob {
   cv::Point2d centre;   ///< centre of mass above the background, accurate to about 0.3 px
   double size_px = 0;   ///< square root of the area above half its height
   double strength = 0;  ///< height above the background, in the unit of the picture
 };
 
-/// Warm spots of `smallest_px` to `largest_px` (square root of area), the strongest first. Each is cut at half of its
-/// own height, so that a lamp in the picture does not hide a triangle. A background that changes over more than about
-/// twice `largest_px` has no effect. For cold spots pass the negative picture.
+/// Returns warm spots of `smallest_px` to `largest_px` (square root of area), the strongest first. Each is cut at half
+/// of its own height, so that a lamp in the picture does not hide a triangle. A background that varies only over more
+/// than about twice `largest_px` has no effect. To find cold spots, pass the negative picture.
 [[nodiscard]] std::vector<Blob> find_warm_blobs(const cv::Mat1d& picture, double smallest_px, double largest_px);
 
 }  // namespace todbench

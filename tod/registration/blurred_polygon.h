@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A polygon under a Gaussian blur, at pixel centres: the shape that registration fits to the picture.
+// A polygon with a Gaussian blur, at pixel centres: the shape that registration fits to the picture.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -8,14 +8,14 @@
 
 namespace todbench {
 
-/// Picture of a polygon of contrast 1 in a window, and its change when the polygon moves by 1 px.
+/// Picture of a polygon of contrast 1 in a window, and its change if the polygon moves by 1 px.
 struct BlurredPolygon {
   cv::Mat1d value, d_shift_x, d_shift_y;
 };
 
-/// The polygon (pixels) convolved with a Gaussian of standard deviation `blur_px` > 0 at the pixel centres of `window`;
-/// error of `value` below 5e-6. A Gaussian is a sufficient model of optics, detector and sampling box for locating a
-/// triangle: to first order only the variance of their shape matters.
+/// Returns the polygon (pixels) convolved with a Gaussian of standard deviation `blur_px` > 0, at the pixel centres of
+/// `window`; the error of `value` is below 5e-6. A Gaussian is a sufficient model of optics, detector and sampling box
+/// for locating a triangle, because to first order only the variance of their shape matters.
 [[nodiscard]] BlurredPolygon blurred_polygon(const Polygon& polygon, double blur_px, cv::Rect window);
 
 }  // namespace todbench

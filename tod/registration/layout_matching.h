@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Assignment of blobs to triangles: the drawing's layout against the spots of a picture.
+// Assigns blobs to triangles by comparing the drawing's layout with the spots of a picture.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -21,26 +21,27 @@ struct MatchLimits {
   cv::Size picture;
 };
 
-/// Triangles paired with blobs under one similarity (rotation, scale, translation; no reflection).
+/// Triangles paired with blobs by one similarity (rotation, scale, translation; no reflection).
 struct LayoutMatch {
   cv::Matx33d plate_to_pixel = cv::Matx33d::eye();         ///< mm -> pixels
   std::vector<std::pair<std::size_t, std::size_t>> pairs;  ///< index of triangle, index of blob
-  int missing = 0;                                         ///< triangles inside the picture without a blob
-  /// More pairs are better; with equally many pairs, fewer missing triangles. Missing triangles are not weighed against
-  /// pairs, because a layout pushed half out of the picture has none.
+  int missing = 0;                                         ///< number of triangles inside the picture without a blob
+  /// Returns whether this match is better: more pairs, or equally many pairs with fewer missing triangles. Missing
+  /// triangles are not weighed against pairs, because a layout shifted half out of the picture has no missing ones.
   [[nodiscard]] bool better_than(const LayoutMatch& other) const {
     if (pairs.size() != other.pairs.size()) return pairs.size() > other.pairs.size();
     return missing < other.missing;
   }
 };
 
-/// Least-squares similarity. With one pair: the translation alone, at `default_scale` and without rotation.
-/// Precondition: as many pixels as places, at least one.
+/// Returns the least-squares similarity. For one pair it is a translation with `default_scale` and without rotation.
+/// Precondition: as many pixels as positions, at least one.
 [[nodiscard]] cv::Matx33d fit_similarity(std::span<const cv::Point2d> plate_mm, std::span<const cv::Point2d> pixels,
                                          double default_scale);
 
-/// The best of the similarities that pairs of triangles and pairs of blobs suggest: the most triangles with a blob of
-/// matching place, size and strength, then the fewest missing. Empty if no blob can be a triangle of the layout.
+/// Returns the best of the similarities that pairs of triangles and pairs of blobs suggest. The best one has the most
+/// triangles with a blob of matching position, size and strength, then the fewest missing. Empty if no blob can be a
+/// triangle of the layout.
 [[nodiscard]] std::optional<LayoutMatch> match_layout(std::span<const PlateTriangle> triangles,
                                                       std::span<const Blob> blobs, const MatchLimits& limits);
 

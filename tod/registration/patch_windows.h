@@ -13,20 +13,20 @@
 
 namespace todbench {
 
-/// A square window of even side whose centre is a corner between four pixels, as near the target's centroid as
-/// possible.
+/// A square window of even side whose centre is a corner between four pixels, as close as possible to the target's
+/// centroid.
 struct PatchWindow {
   cv::Rect pixels;
   cv::Point2d phase;  ///< centroid minus window centre, each in [-0.5, 0.5)
 };
 
-/// Window of `side` pixels (even) round a centroid in pixel coordinates (pixel centres at integers).
+/// Returns the window of `side` pixels (even) round a centroid in pixel coordinates (pixel centres at integers).
 [[nodiscard]] PatchWindow patch_window(cv::Point2d centroid_px, int side);
 
-/// A triangle whose window comes too near another triangle.
+/// A triangle whose window is too close to another triangle.
 struct TouchingWindow {
   std::string triangle, neighbour;
-  int side_px = 0;          ///< of the window
+  int side_px = 0;          ///< side of the window
   double gap_px = 0;        ///< between the window with its search and the neighbour
   double least_gap_px = 0;  ///< required because of blur
 };
@@ -38,17 +38,18 @@ struct WindowOutOfPicture {
   cv::Size picture;
 };
 
-/// "TRIANGLE: its window of 20 px comes within 0.3 px of ..."
+/// Returns a sentence: "TRIANGLE: its window of 20 px comes within 0.3 px of ..."
 [[nodiscard]] std::string sentence(const TouchingWindow& window);
 [[nodiscard]] std::string sentence(const WindowOutOfPicture& window);
 
-/// Triangles of a mounted plate whose window, widened by the observer's search and half a pixel, touches a neighbour
-/// (whose edge counts 1.5 px further out because of blur) at the expected scale and aspect of `options`. `sides` and
-/// `search` are in the order of the triangles.
+/// Returns the triangles of a mounted plate whose window touches a neighbour at the expected scale and aspect of
+/// `options`. The window is widened by the observer's search and half a pixel; because of blur, the edge of the
+/// neighbour is assumed 1.5 px further out. `sides`: in the order of the triangles.
 [[nodiscard]] std::vector<TouchingWindow> touching_windows(const TargetPlate& plate, const RegistrationOptions& options,
                                                            const std::vector<int>& sides, double search_px);
 
-/// Triangles whose window leaves a picture of this size, also if the plate moves by up to a pixel.
+/// Returns the triangles whose window leaves a picture of this size, even if only after a motion of the plate of up to
+/// a pixel.
 [[nodiscard]] std::vector<WindowOutOfPicture> windows_out_of_picture(const TargetPlate& mounted_plate,
                                                                      const Registration& registration,
                                                                      const std::vector<int>& sides, cv::Size picture);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Attempt to match a plate in one mounting with a picture.
+// Attempt to match a picture with a plate in one mounting.
 #pragma once
 
 #include <array>
@@ -17,7 +17,8 @@ namespace todbench {
 inline constexpr double first_blur_px = 0.45;        ///< optics, detector and sampling box of a focused camera
 inline constexpr double searched_scale_range = 0.3;  ///< relative; wide enough to report a wrong scale
 inline constexpr int credible_pairs = 4;             ///< fewer blobs fit any layout by chance
-inline constexpr double agreement_needed = 0.75;  ///< share of the large triangles that must point as the plate states
+inline constexpr double agreement_needed = 0.75;     ///< share of the large triangles that must point as stated by the
+                                                     ///< plate
 
 /// Data that all attempts at one scale share. Picture and options must outlive it.
 struct PlateSearch {
@@ -26,13 +27,13 @@ struct PlateSearch {
   std::array<std::vector<Blob>, 2> blobs;  ///< warm, cold
 };
 
-/// The plate in one mounting, laid over the picture.
+/// The plate in one mounting, matched with the picture.
 struct PlateAttempt {
   Mounting mounting = Mounting::identity;
   double sign = 1;
   std::vector<PlateTriangle> large;
   LayoutMatch match;
-  std::vector<PlateTriangle> located;  ///< those with the stated orientation
+  std::vector<PlateTriangle> located;  ///< triangles with the stated orientation
   std::vector<cv::Point2d> pixels;     ///< their centroids
   int judged = 0;                      ///< large triangles whose orientation could be determined
   double blur_px = first_blur_px;
@@ -42,20 +43,21 @@ struct PlateAttempt {
   }
 };
 
-/// Finds the blobs of the sizes that the large triangles have at the expected scale. Precondition: there are some.
+/// Finds the blobs that have the size of the large triangles at the expected scale. Precondition: there are large
+/// triangles.
 [[nodiscard]] PlateSearch search_for(const cv::Mat1d& picture, const TargetPlate& plate,
                                      const RegistrationOptions& options);
 
-/// Matches the layout in one mounting with the warm and with the cold blobs; returns the better one, with judged
-/// orientations. Empty: no arrangement fits.
+/// Matches the layout in one mounting with the warm and with the cold blobs. Returns the better match with the
+/// orientations determined. Empty: no arrangement fits.
 [[nodiscard]] std::optional<PlateAttempt> attempt_mounting(const PlateSearch& search, const TargetPlate& plate,
                                                            Mounting relative);
 
-/// Improves mapping, places and blur in turn. Then leaves out triangles displaced by a bad pixel or dirt while enough
-/// remain.
+/// Improves mapping, positions and blur alternately. Then excludes triangles displaced by a bad pixel or dirt while
+/// enough remain.
 [[nodiscard]] FittedMapping refine_attempt(const PlateSearch& search, PlateAttempt& at);
 
-/// Places of the triangles on the plate, in mm.
+/// Returns the positions of the triangles on the plate, in mm.
 [[nodiscard]] std::vector<cv::Point2d> places_of(const std::vector<PlateTriangle>& triangles);
 
 }  // namespace todbench

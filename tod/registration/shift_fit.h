@@ -14,48 +14,52 @@ namespace todbench {
 
 /// Difference between a picture and the expected polygons.
 struct ShiftFit {
-  cv::Point2d shift;                     ///< of all polygons together, from their given places, px
+  cv::Point2d shift;                     ///< common shift of all polygons from their given positions, px
   cv::Point2d standard_error;            ///< from the residuals, px
   std::vector<double> amplitudes;        ///< contrast of each polygon, in the unit of the picture
   std::vector<double> amplitude_errors;  ///< their standard errors
   double residual_rms = 0;               ///< unit of the picture
-  double unexplained = 1;         ///< share of the windows' variance (beyond a plane) that the polygons do not explain
-  double joint_significance = 0;  ///< common contrast over its standard error; > 0 for warm polygons
+  double unexplained = 1;  ///< share of the windows' variance (after removal of a plane) that the polygons do not
+                           ///< explain
+  double joint_significance = 0;  ///< common contrast divided by its standard error; > 0 for warm polygons
 };
 
 /// Fits one common shift of `polygons` (pixels), starting at `start`, with a free contrast and a free background plane
-/// for each. Each is compared in its bounding box and 3 px round it; other objects should be farther away. Empty if a
-/// window leaves the picture, the shift exceeds `reach_px` from `start`, or the picture is flat.
+/// for each. Each polygon is compared in its bounding box and 3 px round it; other objects should be farther away.
+/// Empty if a window leaves the picture, the shift exceeds `reach_px` from `start`, or the picture is flat.
 ///
-/// The fit is more precise than the centre of mass, in which noise has a weight that grows with the distance from the
-/// centre (0.14 px for S = 5 px at contrast / noise = 13). Only noise along the edges affects the fit (0.023 px).
+/// The fit is more precise than the centre of mass. In the centre of mass the weight of noise increases with the
+/// distance from the centre (0.14 px for S = 5 px at contrast / noise = 13). Only noise along the edges affects the fit
+/// (0.023 px).
 [[nodiscard]] std::optional<ShiftFit> fit_shift(const cv::Mat1d& picture, std::span<const Polygon> polygons,
                                                 double blur_px, cv::Point2d start, double reach_px);
 
-/// First-order displacement of polygons of one contrast from their given places.
+/// First-order displacement of polygons with a common contrast from their given positions.
 struct PlaceFit {
   double amplitude = 0, amplitude_error = 0;  ///< common contrast, in the unit of the picture
-  cv::Point2d shift, standard_error;          ///< of all polygons together, px
-  double turn_rad = 0, turn_error_rad = 0;    ///< about `centre`, clockwise in the picture; 0 for fewer than 3 polygons
+  cv::Point2d shift, standard_error;          ///< common shift of all polygons, px
+  double turn_rad = 0, turn_error_rad = 0;    ///< rotation about `centre`, clockwise in the picture; 0 for fewer than 3
+                                              ///< polygons
   double residual_rms = 0;                    ///< unit of the picture
 };
 
-/// Computes one Gauss-Newton step from the given places. It is linear in the picture, so that it is unbiased and has a
-/// known error even if the noise hides every single polygon; a shift above half a pixel is underestimated. The standard
-/// error is the largest of three: pixels independent, rows in common, columns in common (sandwich estimate). Empty if a
-/// window leaves the picture or the polygons do not determine a shift.
+/// Computes one Gauss-Newton step from the given positions. The step is linear in the picture. It is therefore unbiased
+/// and has a known error even if the noise hides every single polygon; a shift above half a pixel is underestimated.
+/// The standard error is the largest of three estimates: independent pixels, noise common to rows, noise common to
+/// columns (sandwich estimate). Empty if a window leaves the picture or the polygons do not determine a shift.
 [[nodiscard]] std::optional<PlaceFit> fit_place(const cv::Mat1d& picture, std::span<const Polygon> polygons,
                                                 double blur_px, cv::Point2d centre);
 
-/// The window of a polygon in fit_place().
+/// Returns the window of a polygon in fit_place().
 [[nodiscard]] cv::Rect place_window(const Polygon& polygon);
 
-/// Sum of squared residuals of the polygons at their places, with contrast and background planes fitted: smallest at
-/// the right blur.
+/// Returns the sum of squared residuals of the polygons at their positions, with contrast and background planes fitted.
+/// It is smallest at the correct blur.
 [[nodiscard]] double misfit(const cv::Mat1d& picture, std::span<const Polygon> polygons, double blur_px);
 
-/// Coarse search: the whole-pixel offset, up to `reach_px` in x and y, at which the polygons with one common contrast
-/// of either sign explain most of the picture. Empty if no offset keeps all windows inside the picture.
+/// Performs a coarse search. Returns the offset in whole pixels, up to `reach_px` in x and y, at which polygons with
+/// one common contrast of either sign explain the largest part of the picture. Empty if no offset keeps all windows
+/// inside the picture.
 [[nodiscard]] std::optional<cv::Point> coarse_offset(const cv::Mat1d& picture, std::span<const Polygon> polygons,
                                                      double blur_px, int reach_px);
 
