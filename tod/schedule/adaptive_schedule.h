@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Presentations chosen by the remaining uncertainty of the answers so far.
+// Chooses presentations according to the remaining uncertainty of the answers so far.
 #pragma once
 
 #include <map>
@@ -16,55 +16,57 @@
 
 namespace todbench {
 
-/// Presentations of a contrast before it can be settled.
+/// Minimum number of presentations at a contrast before it can be settled.
 inline constexpr int least_adaptive_presentations = 8;
 
-/// Returns the time of a visit to a set-up, in s. It is the sum of the changes of plate, mounting and contrasts, of the
-/// shifts, and of 0.1 s for each presentation.
+/// Returns the duration of a visit to a set-up, in s. It is the sum of the changes of plate, mounting and contrasts, of
+/// the shifts, and of 0.1 s for each presentation.
 [[nodiscard]] double visit_seconds(const ConstantStimuliOptions& stimuli, bool other_plate, bool other_mounting,
                                    int contrasts);
 
 /// Options of AdaptiveSchedule.
 struct AdaptiveOptions {
-  /// Plates, mountings, contrasts, pixel and costs of changes. `phases`: presentations per visit, which is one contrast
-  /// in one set-up before something else is changed.
+  /// Plates, mountings, contrasts, pixel and costs of changes. `phases`: presentations per visit. A visit shows one
+  /// contrast in one set-up before the next change.
   ConstantStimuliOptions stimuli;
-  std::vector<TargetPlate> plates;  ///< identity mounting; with the sizes that each shows
+  std::vector<TargetPlate> plates;  ///< in identity mounting, with the sizes on each plate
   double distance_m = 0;
-  FitOptions fit;  ///< of the final fit
-  /// Functions of the twin by contrast, if the final fit uses them; a contrast without one has a Weibull function.
+  FitOptions fit;  ///< options of the final fit
+  /// Functions of the twin by contrast, if the final fit uses them. A contrast without an entry uses a Weibull
+  /// function.
   std::map<double, ProportionTable> functions{};
   double half_width_percent = 10;     ///< target for half the width of the 95 % interval of ln S75, at every contrast
-  bool with_contrast_errors = false;  ///< the interval includes those of the measured contrasts (observe_contrasts())
-  int max_presentations = 1000;       ///< hard limit, over all contrasts; at least one visit to each contrast is made
+  bool with_contrast_errors = false;  ///< the interval includes the errors of the measured contrasts
+                                      ///< (observe_contrasts())
+  int max_presentations = 1000;       ///< limit over all contrasts; at least one visit to each contrast is made
 };
 
-/// Progress of a contrast.
+/// Progress at a contrast.
 struct ContrastProgress {
   double delta_t_k = 0;
   double trials = 0;
   int presentations = 0;
   std::optional<double> half_width_percent;  ///< empty while a side of the interval is open
   bool settled = false;
-  /// Not settled, and three quarters or more of the variance come from the measured contrast: another set-up reduces
-  /// it, another presentation in the same set-up does not.
+  /// True if the contrast is not settled and at least three quarters of the variance come from the measured contrast.
+  /// Another set-up reduces this variance; another presentation in the same set-up does not.
   bool needs_set_up = false;
 };
 
-/// Share of the variance of an interval from which on the measured contrast decides its width.
+/// Share of the variance of an interval above which the measured contrast determines its width.
 inline constexpr double contrast_decides = 0.75;
 
-/// All triangles of a picture are answered at once without cost; changing the target costs time. The schedule therefore
-/// chooses set-ups (plate and mounting): the one whose triangles are expected to remove most entropy from the
-/// thresholds of the open contrasts (PsiPlacement::expected_gain, summed over triangles) per second of changing the
-/// target. Set-ups visited before count less, so that places on the plate vary. A visit begins at the highest contrast,
-/// where the plate is registered, and continues with the open ones. A contrast is settled, also in the middle of a
-/// visit, when it has at least 40 trials of three sizes in eight presentations, a two-sided interval with a half-width
-/// below the target, and a fit that the data do not contradict (deviance, p > 0.001; graded answers have their own
-/// interval and no deviance). If the errors of the measured contrasts belong to the interval and are too large without
-/// the answers, it is settled after two visits of each set-up. The run ends when all are settled or at the limit. The
-/// shifts of a visit are those of even_phases(), over the mountings of its plate; those of every further visit of a
-/// set-up lie between them.
+/// All triangles of a picture are answered together without cost; changing the target costs time. The schedule
+/// therefore chooses set-ups (plate and mounting). It chooses the set-up whose triangles are expected to reduce the
+/// entropy of the thresholds of the open contrasts most (PsiPlacement::expected_gain, summed over triangles) per second
+/// of target changes. Set-ups visited before have less weight, so that places on the plate vary. A visit begins at the
+/// highest contrast, where the plate is registered, and continues with the open ones. A contrast is settled, even
+/// within a visit, when it fulfils three conditions: at least 40 trials of three sizes in eight presentations, a
+/// two-sided interval with a half-width below the target, and a fit that the data do not contradict (deviance, p >
+/// 0.001; graded answers have their own interval and no deviance). If the interval includes the errors of the measured
+/// contrasts and these alone exceed the target, the contrast is settled after two visits of each set-up. The run ends
+/// when all contrasts are settled or at the limit. The shifts of a visit come from even_phases(), over the mountings of
+/// its plate; the shifts of each further visit to a set-up lie between them.
 class AdaptiveSchedule final : public TrialSchedule {
  public:
   AdaptiveSchedule(AdaptiveOptions options, const RandomStream& stream);
@@ -74,14 +76,14 @@ class AdaptiveSchedule final : public TrialSchedule {
   void observe(std::span<const Trial> trials) override;
   void observe_contrasts(const std::map<double, ContrastError>& errors) override;
 
-  /// Progress of the contrasts, highest first.
+  /// Returns the progress at the contrasts, highest first.
   [[nodiscard]] std::vector<ContrastProgress> progress() const;
 
  private:
   struct SetUp {
     std::size_t plate = 0;
     Mounting mounting = Mounting::identity;
-    std::size_t group = 0;  ///< number of the mounting
+    std::size_t group = 0;  ///< index of the mounting
     int visits = 0;
   };
   struct Contrast {
@@ -89,28 +91,28 @@ class AdaptiveSchedule final : public TrialSchedule {
     PsiPlacement knowledge;
     std::vector<Trial> trials;
     std::optional<TodPoint> point{};  ///< last fit, without the errors of contrasts
-    std::vector<cv::Point2d> starts;  ///< of the phases of each plate, fractions of a pixel
+    std::vector<cv::Point2d> starts;  ///< starts of the phases of each plate, fractions of a pixel
     ContrastProgress progress;
   };
 
   void begin_visit();
-  /// Phase of the next presentation of a contrast in this set-up, as a fraction of a pixel.
+  /// Returns the phase of the next presentation of a contrast in this set-up, as a fraction of a pixel.
   [[nodiscard]] cv::Point2d next_phase(const Contrast& contrast) const;
   [[nodiscard]] double value_per_second(const SetUp& set_up) const;
   void judge(Contrast& contrast) const;
-  /// Fit of the answers to a contrast; empty if there is none.
+  /// Fits the answers at a contrast; empty if the fit fails.
   [[nodiscard]] std::optional<TodPoint> fitted(const Contrast& contrast) const;
-  /// Sets the half-width of a contrast. Returns whether it is below the target or cannot get there.
+  /// Sets the half-width at a contrast. Returns whether it is below the target or cannot reach it.
   [[nodiscard]] bool narrow_enough(Contrast& contrast) const;
 
   AdaptiveOptions options_;
   std::vector<SetUp> set_ups_;
-  std::vector<EvenPhases> phases_;  ///< of each plate
+  std::vector<EvenPhases> phases_;  ///< phases of each plate
   std::vector<Contrast> contrasts_;
   std::map<double, ContrastError> contrast_errors_;
   std::size_t current_set_up_ = 0;
   std::vector<std::size_t> to_visit_;  ///< remaining contrasts of this visit, the present one first
-  int shown_here_ = 0;                 ///< of the present contrast in this visit
+  int shown_here_ = 0;                 ///< presentations of the present contrast in this visit
   bool registered_ = false;            ///< the visit has shown its first contrast
   int shown_ = 0;
 };

@@ -13,36 +13,37 @@ namespace todbench {
 /// Options of PsiPlacement.
 struct PsiOptions {
   PsychometricForm form = PsychometricForm::size;
-  double first_size = 1;  ///< prior of the threshold: uniform in its logarithm between these two, > 0
+  double first_size = 1;  ///< the prior of the threshold is uniform in its logarithm between these two, > 0
   double last_size = 10;
-  double size_step = 0.05;        ///< of the candidate sizes, in ln
-  double selection_lapse = 0.01;  ///< in the selection model only, so that one slip cannot exclude the truth
-  /// Share of trials at 2.5 times the threshold, where only a lapse gives a wrong answer.
+  double size_step = 0.05;        ///< step of the candidate sizes, in ln
+  double selection_lapse = 0.01;  ///< only in the selection model, so that one slip cannot exclude the truth
+  /// Share of trials at 2.5 times the threshold, where only a lapse causes a wrong answer.
   double lapse_probe_share = 0.05;
   double slope_probe_share = 0.1;  ///< share of trials at 45 % correct, which determine the slope
 };
 
-/// Chooses sizes one after the other: the size whose answer is expected to leave the least entropy in the marginal of
-/// the threshold (Kontsevich and Tyler 1999; the slope is a nuisance parameter, Prins 2013). The posterior is stored on
-/// a grid of ln threshold and ln slope in logarithms. If its spread falls below two grid steps, the grid is centred
-/// anew and halved; if it reaches an edge, the grid moves; the posterior is then recomputed from all answers. For
-/// placing trials only: thresholds come from fit_psychometric(). For answers placed one by one use its posterior
-/// interval: the coverage of its profile interval is up to 2.6 points below 95 % (docs/method/uncertainty.md). One
-/// thread at a time.
+/// Chooses sizes one after another. It selects the size whose answer is expected to leave the least entropy in the
+/// marginal of the threshold (Kontsevich and Tyler 1999; the slope is a nuisance parameter, Prins 2013). The posterior
+/// is stored in logarithms on a grid of ln threshold and ln slope. If its spread falls below two grid steps, the grid
+/// is re-centred and its step is halved. If the posterior reaches an edge, the grid moves. The posterior is then
+/// recomputed from all answers. Use it only to place trials: thresholds come from fit_psychometric(). For answers
+/// placed one by one use its posterior interval, because the coverage of its profile interval is up to 2.6 points below
+/// 95 % (docs/method/uncertainty.md). One thread at a time.
 class PsiPlacement {
  public:
-  /// `stream` decides on probes and on ties.
+  /// Starts without answers. `stream` decides on probes and on ties.
   PsiPlacement(const PsiOptions& options, RandomStream stream);
 
-  /// The next size. Unchanged until observe() is called.
+  /// Returns the next size. It does not change until observe() is called.
   [[nodiscard]] double next() const;
   /// Adds answers at a size > 0; counts as in Level. Any size is allowed.
   void observe(double size, double correct, double total);
 
-  /// Mean and standard deviation of the marginal posterior of ln threshold.
+  /// Return mean and standard deviation of the marginal posterior of ln threshold.
   [[nodiscard]] double mean_ln_threshold() const { return mean_; }
   [[nodiscard]] double sd_ln_threshold() const { return sd_; }
-  /// Expected reduction by one answer at `size` of the entropy of the marginal of ln threshold, in nats, >= 0.
+  /// Returns by how much one answer at `size` is expected to reduce the entropy of the marginal of ln threshold, in
+  /// nats, >= 0.
   [[nodiscard]] double expected_gain(double size) const;
 
  private:
@@ -61,11 +62,11 @@ class PsiPlacement {
   RandomStream stream_;
   std::uint64_t asked_ = 0;
   std::vector<Answers> answers_;
-  double step_ = 0;                   ///< of ln threshold
+  double step_ = 0;                   ///< step of ln threshold
   std::vector<double> ts_, qs_;       ///< nodes
   std::vector<double> ln_posterior_;  ///< [q][t], without a constant
   std::vector<double> posterior_;     ///< the same normalised to sum 1
-  std::vector<double> marginal_;      ///< of t
+  std::vector<double> marginal_;      ///< marginal posterior of t
   double mean_ = 0, sd_ = 0, mean_q_ = 0, entropy_ = 0;
   double first_candidate_ = 0;  ///< ln size; a multiple of size_step
   std::vector<double> table_;   ///< psi [candidate][q][t]

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Presentations while the contrast falls and rises: a curve of many contrasts from one pass of every set-up.
+// Presentations while the contrast decreases and increases: a curve of many contrasts from one pass of every set-up.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +12,11 @@
 
 namespace todbench {
 
-/// Time between two shifts in a ramp. With 0.1 s to move and 0.04 s discarded, 18 of 25 frames remain; with shifts
+/// Time between two shifts in a ramp. With 0.1 s for a motion and 0.04 s discarded, 18 of 25 frames remain; with shifts
 /// every 0.2 s only 3 of 10.
 inline constexpr double ramp_step_s = 0.5;
 
-/// Presentations at the first contrast, settled, before the first ramp: ramps are compared with them (contrast_lag.h).
+/// Presentations at the settled first contrast before the first ramp. Ramps are compared with them (contrast_lag.h).
 inline constexpr std::size_t ramp_hold = 20;
 
 /// Options of RampSchedule.
@@ -24,21 +24,22 @@ struct RampOptions {
   /// Plates, mountings and pixel; `delta_t_k` are the contrasts of the points, `phases` is not used.
   ConstantStimuliOptions stimuli;
   double from_k = 0, to_k = 0;  ///< of one sign, `to_k` nearer to 0
-  double rate_k_per_s = 0;      ///< at `from_k`, > 0; it falls in proportion to the contrast
+  double rate_k_per_s = 0;      ///< rate at `from_k`, > 0; it decreases in proportion to the contrast
 };
 
-/// Number of presentations of one ramp, from the first contrast to the last.
+/// Returns the number of presentations of one ramp, from the first contrast to the last.
 [[nodiscard]] std::size_t ramp_steps(const RampOptions& options);
-/// Relative rate of the contrast, 1/s.
+/// Returns the relative rate of the contrast, 1/s.
 [[nodiscard]] double ramp_relative_rate(const RampOptions& options);
 
-/// Returns `ramp_hold` presentations at `from_k`, and then one ramp down and one up for every set-up. The shifts are an
-/// additive recurrence with a random start, which is even over every stretch of a ramp. The first presentation of a
-/// ramp waits until `from_k` is near; no other of a ramp waits for a contrast.
+/// Returns `ramp_hold` presentations at `from_k`, followed by one ramp down and one ramp up for every set-up. The
+/// shifts are an additive recurrence with a random start, which is even over every part of a ramp. The first
+/// presentation of a ramp waits until the contrast is near `from_k`; the others do not wait for a contrast.
 [[nodiscard]] std::vector<TargetState> ramp_presentations(const RampOptions& options, const RandomStream& stream);
 
-/// Shows ramp_presentations(). A slow black body lags behind its set-points: the end of a ramp down is presented again,
-/// with further shifts, until the camera observes the last contrast within 10 %, or the ramp is four times as long.
+/// Shows ramp_presentations(). A slow black body lags behind its set-points. Therefore the end of a ramp down is
+/// presented again, with further shifts, until the camera observes the last contrast within 10 %, or until the ramp is
+/// four times as long.
 class RampSchedule final : public TrialSchedule {
  public:
   RampSchedule(const RampOptions& options, const RandomStream& stream);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Choice of the next presentation.
+// Selection of the next presentation.
 #pragma once
 
 #include <cstdint>
@@ -21,30 +21,31 @@ namespace todbench {
 class TrialSchedule {
  public:
   virtual ~TrialSchedule() = default;
-  /// The next state; empty when enough has been shown.
+  /// Returns the next state; empty when enough has been shown.
   [[nodiscard]] virtual std::optional<TargetState> next() = 0;
-  /// Total number of presentations, for progress and remaining time; the largest possible number if answers decide.
+  /// Returns the total number of presentations, for progress and remaining time. If answers determine it, this is the
+  /// largest possible number.
   [[nodiscard]] virtual std::size_t planned() const = 0;
-  /// Takes the answers to the last state of next(). Schedules that do not adapt ignore them.
+  /// Receives the answers to the last state of next(). Schedules that do not adapt ignore them.
   virtual void observe(std::span<const Trial> trials);
-  /// Takes the standard errors of the contrasts measured so far, by set contrast, before the answers that follow.
-  /// Those that cannot be estimated are missing. Schedules that do not adapt ignore them.
+  /// Receives the standard errors of the contrasts measured so far, by set contrast, before the answers that follow.
+  /// Errors that cannot be estimated are missing. Schedules that do not adapt ignore them.
   virtual void observe_contrasts(const std::map<double, ContrastError>& errors);
 };
 
 /// The method of constant stimuli on plates: every plate in its mountings at every contrast in every phase.
 struct ConstantStimuliOptions {
   std::vector<std::string> plates;
-  /// Drawings of the plates, by name, from which the phases of their triangles are chosen together. A plate without one
-  /// counts as one triangle in its middle.
+  /// Drawings of the plates, by name. They are used to optimise the phases of the triangles together. A plate without a
+  /// drawing is treated as one triangle in its middle.
   std::vector<TargetPlate> drawings{};
   std::vector<Mounting> mountings;
-  /// For each of `plates`, the number of `mountings` that show it, counted from the first one; empty: all of them.
+  /// For each of `plates`, the number of `mountings` in which it is shown, counted from the first one; empty: all.
   std::vector<std::size_t> mountings_per_plate{};
   std::vector<double> delta_t_k;
   int phases = 16;                              ///< sub-pixel shifts per plate, mounting and contrast
   double pixel_mm = 1;                          ///< one pixel on the plate; shifts are spread over one pixel in x and y
-  double pixel_aspect = 1;                      ///< height of a pixel over its width, which is pixel_mm
+  double pixel_aspect = 1;                      ///< ratio of height to width of a pixel; the width is pixel_mm
   double change_cost_s[4] = {60, 30, 20, 0.1};  ///< plate, mounting, contrast, shift
   /// Returns whether the plate is shown in the mounting, by their indices.
   [[nodiscard]] bool shows(std::size_t plate, std::size_t mounting) const {
@@ -52,23 +53,23 @@ struct ConstantStimuliOptions {
   }
 };
 
-/// Width and height of a pixel on the plate.
+/// Returns width and height of a pixel on the plate.
 [[nodiscard]] cv::Size2d pixel_of(const ConstantStimuliOptions& options);
-/// Converts a phase in pixels to a shift in mm. Whole pixels are removed first.
+/// Converts a phase in pixels to a shift in mm. Integer pixels are removed first.
 [[nodiscard]] cv::Point2d shift_of(cv::Point2d phase_px, const ConstantStimuliOptions& options);
 
-/// The first `count` points of the additive recurrence with the plastic number (Roberts 2018) in [0, 1)^2, from the
-/// origin.
+/// Returns the first `count` points of the additive recurrence with the plastic number (Roberts 2018) in [0, 1)^2, from
+/// the origin.
 [[nodiscard]] std::vector<cv::Point2d> plastic_points(int count);
 
-/// Returns `count` sub-pixel shifts in [0, 1)^2, spread evenly for every count (additive recurrence with the plastic
-/// number, Roberts 2018), from a random start drawn from `stream`.
+/// Returns `count` sub-pixel shifts in [0, 1)^2 from a random start drawn from `stream`. They are spread evenly for
+/// every count (additive recurrence with the plastic number, Roberts 2018).
 [[nodiscard]] std::vector<cv::Point2d> spread_phases(int count, const RandomStream& stream);
 
-/// Presentations nested so that the slowest change is made least often. Within a contrast group the highest contrast
-/// comes first, because the plate is registered there. Ties keep the order plate, mounting, contrast, shift. The shifts
-/// come from even_phases(). They are spread over the mountings together if a shift is cheaper than a mounting. Each
-/// plate and contrast has a random start within the pixel.
+/// Returns presentations, nested so that the slowest change occurs least often. Within a contrast group the highest
+/// contrast comes first, because the plate is registered there. Ties keep the order plate, mounting, contrast, shift.
+/// The shifts come from even_phases(). They are spread over all mountings together if a shift is cheaper than a
+/// mounting. Each plate and contrast has a random start within the pixel.
 [[nodiscard]] std::vector<TargetState> constant_stimuli(const ConstantStimuliOptions& options,
                                                         const RandomStream& stream);
 
