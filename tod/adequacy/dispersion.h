@@ -11,8 +11,8 @@ namespace todbench {
 /// Ratio of the sum of squares of standardised residuals to its expectation under the model.
 struct Dispersion {
   double ratio = 1;  ///< observed / expected
-  /// Degrees of freedom of the chi-square distribution that the ratio follows, divided by its mean; 0: no test is
-  /// possible.
+  /// Degrees of freedom of a chi-square distribution; the ratio follows this distribution divided by its mean. 0: no
+  /// test is possible.
   double degrees_of_freedom = 0;
   double denominator_freedom = 0;  ///< degrees of freedom of an expectation estimated from clusters; 0: exact
                                    ///< expectation
