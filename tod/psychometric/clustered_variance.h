@@ -13,8 +13,8 @@ namespace todbench {
 /// Maximum number of parameters of an estimating equation.
 inline constexpr std::size_t most_parameters = 4;
 
-/// Minimum number of set-ups for their variance to be used. With one set-up less, and so three degrees of freedom,
-/// Student's t is 3.2.
+/// Minimum number of set-ups for their variance to be used. With four set-ups, and therefore three degrees of
+/// freedom, Student's t would be 3.2.
 inline constexpr double least_set_ups = 5;
 
 /// Contribution of one answer to the estimating equation of a quasi-likelihood, in standard deviations of the variance

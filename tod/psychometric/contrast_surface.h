@@ -40,7 +40,7 @@ class ContrastSurface {
 
   /// Returns ln of the size at 75 %: cubic in u between the contrasts of the tables, constant beyond the strongest one.
   [[nodiscard]] double ln_threshold(double delta_t_k) const;
-  /// Returns the slope of ln_threshold() per unit of ln contrast, from differences of 1 % of the contrast.
+  /// Returns the slope of ln_threshold() per unit of ln contrast, from contrasts 1 % above and below.
   [[nodiscard]] double slope(double delta_t_k) const;
   /// Returns the value at ln(size / mrad), from the functions of the neighbouring tables, shifted to the same
   /// threshold.
