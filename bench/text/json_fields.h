@@ -78,9 +78,13 @@ class JsonFields {
   }
   /// Describes a constant text, for example the name of a format. Any other text is a mistake.
   void constant(const std::string& key, std::string_view text);
-  /// Describes a derived value that is written for other programs and not read.
-  void derived(const std::string& key, Json value) {
-    if (!reader_) put(key, std::move(value));
+  /// Describes a value that is written for other programs and not read. A number that is not finite becomes null.
+  template <typename Value, typename... How>
+  void derived(const std::string& key, Value value, const How&... how) {
+    if (reader_) return;
+    std::string ignored;
+    JsonFields printed(path_, &ignored);
+    put(key, printed.written(path_of(key), value, how...));
   }
 
   /// Returns whether the description reads. It may then set members that older records do not state.
