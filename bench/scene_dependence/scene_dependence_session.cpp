@@ -124,7 +124,7 @@ class BarSession {
     }
     TODBENCH_TRY_VOID(
         write_file_atomically(folder_->path() / "scene-dependence.json", to_page(scene_dependence_json(found, task_))));
-    return folder_->write_measures(measures_json(lines_of(found, task_)));
+    return folder_->write_measures(measures_record(lines_of(found, task_)));
   }
 
   const LoadedPlan& loaded_;

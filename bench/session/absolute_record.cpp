@@ -85,59 +85,40 @@ void add_lines(MeasureLines& out, const AbsoluteMeasure& measure) {
   out.absolute = measure;
 }
 
-Json absolute_json(const AbsoluteMeasure& measure) {
-  Json levels = Json::array();
-  for (const AbsoluteLevel& level : measure.levels) {
-    levels.push_back({{"set_k", json_number(level.set_k)},
-                      {"said_k", json_number(level.said_k)},
-                      {"expected_k", json_number(level.expected_k)},
-                      {"seen_k", json_number(level.seen_k)},
-                      {"difference_k", json_number(level.difference_k)},
-                      {"camera_c", json_number(level.camera_c)},
-                      {"pattern_k", level.saturated ? Json() : estimate_json(level.pattern_k)},
-                      {"saturated", level.saturated}});
-  }
-  return {{"plate", measure.plate},
-          {"frames", measure.frames},
-          {"levels", levels},
-          {"repeatability_k", json_number(measure.repeatability_k)},
-          {"u_k", json_number(measure.u_k)},
-          {"degrees_of_freedom", measure.degrees_of_freedom},
-          {"source_u_k", json_number(measure.source_u_k)},
-          {"nonlinearity_percent", json_number(measure.nonlinearity_percent)},
-          {"undetermined_slope_k", json_number(measure.undetermined_slope_k)}};
+void absolute_level_fields(JsonFields& json, AbsoluteLevel& level) {
+  json.value("set_k", level.set_k);
+  json.value("said_k", level.said_k);
+  json.value("expected_k", level.expected_k);
+  json.value("seen_k", level.seen_k);
+  json.derived("difference_k", level.difference_k);
+  json.derived("camera_c", level.camera_c);
+  json.derived("pattern_k", level.saturated ? std::nullopt : std::optional(level.pattern_k), estimate_fields);
+  json.value("saturated", level.saturated);
 }
 
-AbsoluteMeasure absolute_from(const JsonReader& part) {
-  AbsoluteMeasure out;
-  out.plate = part.at("plate").text();
-  out.u_k = part.at("u_k").number();
-  out.degrees_of_freedom = static_cast<int>(part.at("degrees_of_freedom").whole());
-  out.source_u_k = part.at("source_u_k").number();
-  for (const JsonReader& level : part.at("levels").elements()) {
-    out.levels.push_back({.set_k = level.at("set_k").number(),
-                          .said_k = level.at("said_k").number(),
-                          .expected_k = level.at("expected_k").number(),
-                          .seen_k = level.at("seen_k").number(),
-                          .saturated = level.at("saturated").flag()});
-  }
-  return out;
+void absolute_fields(JsonFields& json, AbsoluteMeasure& measure) {
+  json.value("plate", measure.plate);
+  json.derived("frames", measure.frames);
+  json.value("levels", measure.levels, absolute_level_fields);
+  json.derived("repeatability_k", measure.repeatability_k);
+  json.value("u_k", measure.u_k);
+  json.value("degrees_of_freedom", measure.degrees_of_freedom);
+  json.value("source_u_k", measure.source_u_k);
+  json.derived("nonlinearity_percent", measure.nonlinearity_percent);
+  json.derived("undetermined_slope_k", measure.undetermined_slope_k);
 }
 
 }  // namespace
 
 MeasureRow absolute_row() {
-  return {
-      .key = "absolute",
-      .add =
-          [](MeasureLines& out, const CameraMeasures& measures) {
-            if (measures.absolute) add_lines(out, *measures.absolute);
-          },
-      .to_json =
-          [](const CameraMeasures& measures) { return measures.absolute ? absolute_json(*measures.absolute) : Json(); },
-      .read = [](MeasureLines& out, const JsonReader& part) { out.absolute = absolute_from(part); },
-      .valid = [](const MeasureLines& lines) { return !lines.absolute || lines.absolute->degrees_of_freedom > 0; },
-      .mistake = "'absolute.degrees_of_freedom': expected a number above 0"};
+  return {.key = "absolute",
+          .add =
+              [](MeasureLines& out, const CameraMeasures& measures) {
+                if (measures.absolute) add_lines(out, *measures.absolute);
+              },
+          .fields = measure_part<&MeasureLines::absolute, absolute_fields>,
+          .valid = [](const MeasureLines& lines) { return !lines.absolute || lines.absolute->degrees_of_freedom > 0; },
+          .mistake = "'absolute.degrees_of_freedom': expected a number above 0"};
 }
 
 }  // namespace todbench

@@ -36,63 +36,40 @@ void add_ctf_lines(MeasureLines& out, const CtfMeasure& ctf) {
   out.ctf = ctf;
 }
 
-Json ctf_json(const CtfMeasure& ctf) {
-  Json groups = Json::array();
-  for (const BarsCtf& group : ctf.bars.groups) {
-    Json model;
-    if (group.model) {
-      model = {{"best", json_number(group.model->best)},
-               {"mean", json_number(group.model->mean)},
-               {"worst", json_number(group.model->worst)}};
-    }
-    groups.push_back({{"group", group.group},
-                      {"axis", to_string(group.axis)},
-                      {"frequency_per_pitch", json_number(group.frequency_per_pitch)},
-                      {"frequency_per_mrad", json_number(group.frequency_per_pitch / ctf.pitch_mrad)},
-                      {"angle_deg", json_number(group.angle_deg)},
-                      {"middle_px", {json_number(group.middle_px.x), json_number(group.middle_px.y)}},
-                      {"pixels", group.pixels},
-                      {"noise_over_contrast", json_number(group.noise_over_contrast)},
-                      {"best", estimate_json(group.best)},
-                      {"mean", estimate_json(group.mean)},
-                      {"worst", estimate_json(group.worst)},
-                      {"bars_separated_at_best", group.bars_separated_at_best},
-                      {"share_of_four", json_number(group.share_of_four)},
-                      {"model", model}});
-  }
-  return {{"plate", ctf.plate},
-          {"frames", ctf.frames},
-          {"set_delta_t_k", ctf.set_delta_t_k},
-          {"said_delta_t_k", json_number(ctf.said_delta_t_k)},
-          {"pitch_mrad", ctf.pitch_mrad},
-          {"stated_near_per_pitch", ctf.frequency_per_pitch},
-          {"contrast_k", json_number(ctf.bars.contrast_k)},
-          {"far_spread", json_number(ctf.bars.far_spread)},
-          {"groups", groups}};
+void bars_model_fields(JsonFields& json, BarsModel& model) {
+  json.value("best", model.best);
+  json.value("mean", model.mean);
+  json.value("worst", model.worst);
 }
 
-CtfMeasure ctf_from(const JsonReader& ctf) {
-  CtfMeasure out;
-  out.pitch_mrad = ctf.at("pitch_mrad").number();
-  for (const JsonReader& group : ctf.at("groups").elements()) {
-    BarsCtf one;
-    one.group = group.at("group").text();
-    one.axis = group.at("axis").named(std::array{EdgeAxis::x, EdgeAxis::y});
-    one.frequency_per_pitch = group.at("frequency_per_pitch").number();
-    one.angle_deg = group.at("angle_deg").number();
-    one.pixels = static_cast<int>(group.at("pixels").whole());
-    one.noise_over_contrast = group.at("noise_over_contrast").number();
-    one.best = estimate_from(group.at("best"));
-    one.mean = estimate_from(group.at("mean"));
-    one.worst = estimate_from(group.at("worst"));
-    one.bars_separated_at_best = static_cast<int>(group.at("bars_separated_at_best").whole());
-    one.share_of_four = group.at("share_of_four").number();
-    const JsonReader model = group.at("model");
-    if (!model.is_null())
-      one.model = BarsModel{model.at("best").number(), model.at("mean").number(), model.at("worst").number()};
-    out.bars.groups.push_back(std::move(one));
-  }
-  return out;
+void bars_group_fields(JsonFields& json, BarsCtf& group, double pitch_mrad) {
+  json.value("group", group.group);
+  json.value("axis", group.axis, std::array{EdgeAxis::x, EdgeAxis::y});
+  json.value("frequency_per_pitch", group.frequency_per_pitch);
+  json.derived("frequency_per_mrad", group.frequency_per_pitch / pitch_mrad);
+  json.value("angle_deg", group.angle_deg);
+  json.derived("middle_px", Interval{group.middle_px.x, group.middle_px.y});
+  json.value("pixels", group.pixels);
+  json.value("noise_over_contrast", group.noise_over_contrast);
+  json.value("best", group.best, estimate_fields);
+  json.value("mean", group.mean, estimate_fields);
+  json.value("worst", group.worst, estimate_fields);
+  json.value("bars_separated_at_best", group.bars_separated_at_best);
+  json.value("share_of_four", group.share_of_four);
+  json.value("model", group.model, bars_model_fields);
+}
+
+void ctf_fields(JsonFields& json, CtfMeasure& ctf) {
+  json.derived("plate", ctf.plate);
+  json.derived("frames", ctf.frames);
+  json.derived("set_delta_t_k", ctf.set_delta_t_k);
+  json.derived("said_delta_t_k", ctf.said_delta_t_k);
+  json.value("pitch_mrad", ctf.pitch_mrad);
+  json.derived("stated_near_per_pitch", ctf.frequency_per_pitch);
+  json.derived("contrast_k", ctf.bars.contrast_k);
+  json.derived("far_spread", ctf.bars.far_spread);
+  json.value("groups", ctf.bars.groups,
+             [&](JsonFields& item, BarsCtf& group) { bars_group_fields(item, group, ctf.pitch_mrad); });
 }
 
 bool drawable(const CtfMeasure& ctf) {
@@ -109,8 +86,7 @@ MeasureRow ctf_row() {
               [](MeasureLines& out, const CameraMeasures& measures) {
                 if (measures.ctf) add_ctf_lines(out, *measures.ctf);
               },
-          .to_json = [](const CameraMeasures& measures) { return measures.ctf ? ctf_json(*measures.ctf) : Json(); },
-          .read = [](MeasureLines& out, const JsonReader& part) { out.ctf = ctf_from(part); },
+          .fields = measure_part<&MeasureLines::ctf, ctf_fields>,
           .valid = [](const MeasureLines& lines) { return !lines.ctf || drawable(*lines.ctf); },
           .mistake = "'ctf.groups': expected frequencies and a pitch above 0"};
 }

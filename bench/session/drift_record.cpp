@@ -18,27 +18,17 @@ Interval scaled_interval(const Interval& interval, double factor) {
   return out;
 }
 
-Json drift_fit_json(const DriftFit& fit) {
-  return {{"shape", to_string(fit.shape)},
-          {"change_k", {{"value", json_number(fit.change_k)}, {"ci95", json_interval(fit.change_ci95)}}},
-          {"time_constant_s", json_number(fit.time_constant_s)},
-          {"time_constant_ci95_s", json_interval(fit.time_constant_ci95)},
-          {"p_linear", json_number(fit.p_linear)},
-          {"seen_k", json_numbers(fit.seen_k)},
-          {"fitted_k", json_numbers(fit.fitted_k)}};
-}
-
-DriftFit drift_fit_from(const JsonReader& record) {
-  DriftFit fit;
-  fit.shape = record.at("shape").named(std::array{DriftShape::linear, DriftShape::approach});
-  fit.change_k = record.at("change_k").at("value").number();
-  fit.change_ci95 = record.at("change_k").at("ci95").interval();
-  fit.time_constant_s = record.at("time_constant_s").optional_number();
-  fit.time_constant_ci95 = record.at("time_constant_ci95_s").interval();
-  fit.p_linear = record.at("p_linear").number();
-  fit.seen_k = record.at("seen_k").numbers();
-  fit.fitted_k = record.at("fitted_k").numbers();
-  return fit;
+void drift_fit_fields(JsonFields& json, DriftFit& fit) {
+  json.value("shape", fit.shape, std::array{DriftShape::linear, DriftShape::approach});
+  json.value("change_k", fit, [](JsonFields& change, DriftFit& of) {
+    change.value("value", of.change_k);
+    change.value("ci95", of.change_ci95);
+  });
+  json.value("time_constant_s", fit.time_constant_s);
+  json.value("time_constant_ci95_s", fit.time_constant_ci95);
+  json.value("p_linear", fit.p_linear);
+  json.value("seen_k", fit.seen_k);
+  json.value("fitted_k", fit.fitted_k);
 }
 
 void add_drift_lines(MeasureLines& out, const DriftMeasure& measure) {
@@ -62,21 +52,15 @@ void add_drift_lines(MeasureLines& out, const DriftMeasure& measure) {
   out.drift = measure;
 }
 
-Json drift_json(const DriftMeasure& measure) {
-  return {{"groups", measure.groups},
-          {"frames_each", measure.frames_each},
-          {"first_s", json_number(measure.first_s)},
-          {"last_s", json_number(measure.last_s)},
-          {"ended_by_correction", measure.ended_by_correction},
-          {"time_s", json_numbers(measure.law.time_s)},
-          {"level", drift_fit_json(measure.law.level)},
-          {"pattern", drift_fit_json(measure.law.pattern)}};
-}
-
-DriftMeasure drift_from(const JsonReader& drift) {
-  DriftMeasure found;
-  found.law = {drift.at("time_s").numbers(), drift_fit_from(drift.at("level")), drift_fit_from(drift.at("pattern"))};
-  return found;
+void drift_fields(JsonFields& json, DriftMeasure& measure) {
+  json.derived("groups", measure.groups);
+  json.derived("frames_each", measure.frames_each);
+  json.derived("first_s", measure.first_s);
+  json.derived("last_s", measure.last_s);
+  json.derived("ended_by_correction", measure.ended_by_correction);
+  json.value("time_s", measure.law.time_s);
+  json.value("level", measure.law.level, drift_fit_fields);
+  json.value("pattern", measure.law.pattern, drift_fit_fields);
 }
 
 bool drawable(const DriftMeasure& drift) {
@@ -90,16 +74,14 @@ bool drawable(const DriftMeasure& drift) {
 }  // namespace
 
 MeasureRow drift_row() {
-  return {
-      .key = "drift",
-      .add =
-          [](MeasureLines& out, const CameraMeasures& measures) {
-            if (measures.drift) add_drift_lines(out, *measures.drift);
-          },
-      .to_json = [](const CameraMeasures& measures) { return measures.drift ? drift_json(*measures.drift) : Json(); },
-      .read = [](MeasureLines& out, const JsonReader& part) { out.drift = drift_from(part); },
-      .valid = [](const MeasureLines& lines) { return !lines.drift || drawable(*lines.drift); },
-      .mistake = "'drift': expected lists of the same length"};
+  return {.key = "drift",
+          .add =
+              [](MeasureLines& out, const CameraMeasures& measures) {
+                if (measures.drift) add_drift_lines(out, *measures.drift);
+              },
+          .fields = measure_part<&MeasureLines::drift, drift_fields>,
+          .valid = [](const MeasureLines& lines) { return !lines.drift || drawable(*lines.drift); },
+          .mistake = "'drift': expected lists of the same length"};
 }
 
 }  // namespace todbench

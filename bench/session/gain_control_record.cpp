@@ -46,54 +46,32 @@ void add_gain_lines(MeasureLines& out, const GainControlMeasure& measure) {
   out.gain_control = measure;
 }
 
-Json gain_json(const GainControlMeasure& measure) {
-  Json levels = Json::array(), settling;
-  for (const GainLevel& level : measure.levels) {
-    levels.push_back({{"set_delta_t_k", level.set_delta_t_k},
-                      {"said_delta_t_k", json_number(level.said_delta_t_k)},
-                      {"surround", json_number(level.surround)},
-                      {"lowest", json_number(level.lowest)},
-                      {"highest", json_number(level.highest)},
-                      {"contrast", json_number(level.contrast)},
-                      {"contrast_u", json_number(level.contrast_u)}});
-  }
-  if (measure.settling) {
-    Json points = Json::array();
-    for (const StepPoint& point : measure.settling->response.points)
-      points.push_back(
-          {{"time_s", json_number(point.time_s)}, {"left", json_number(point.left)}, {"rising", point.rising}});
-    settling = {{"delta_t_k", measure.settling->delta_t_k},
-                {"change", json_number(measure.settling->change)},
-                {"time_constant_ms", json_number(gain_ms_of_s * measure.settling->response.both.value_s)},
-                {"p_first_order", json_number(measure.settling->response.p_first_order)},
-                {"points", points}};
-  }
-  return {{"unit", measure.unit}, {"frames", measure.frames}, {"levels", levels}, {"settling", settling}};
+void gain_level_fields(JsonFields& json, GainLevel& level) {
+  json.value("set_delta_t_k", level.set_delta_t_k);
+  json.value("said_delta_t_k", level.said_delta_t_k);
+  json.value("surround", level.surround);
+  json.value("lowest", level.lowest);
+  json.value("highest", level.highest);
+  json.value("contrast", level.contrast);
+  json.value("contrast_u", level.contrast_u);
 }
 
-GainControlMeasure gain_from(const JsonReader& part) {
-  GainControlMeasure out;
-  out.unit = part.at("unit").text();
-  for (const JsonReader& level : part.at("levels").elements()) {
-    out.levels.push_back({.set_delta_t_k = level.at("set_delta_t_k").number(),
-                          .said_delta_t_k = level.at("said_delta_t_k").number(),
-                          .surround = level.at("surround").number(),
-                          .lowest = level.at("lowest").number(),
-                          .highest = level.at("highest").number(),
-                          .contrast = level.at("contrast").number(),
-                          .contrast_u = level.at("contrast_u").number()});
-  }
-  const JsonReader settling = part.at("settling");
-  if (settling.is_null()) return out;
-  out.settling.emplace();
-  out.settling->delta_t_k = settling.at("delta_t_k").number();
-  out.settling->response.both.value_s = settling.at("time_constant_ms").number() / gain_ms_of_s;
-  for (const JsonReader& point : settling.at("points").elements()) {
-    out.settling->response.points.push_back({.time_s = point.at("time_s").number(),
-                                             .left = point.at("left").number(),
-                                             .rising = point.at("rising").flag()});
-  }
-  return out;
+void gain_settling_fields(JsonFields& json, ResponseMeasure& settling) {
+  StepResponse& found = settling.response;
+  double time_constant_ms = gain_ms_of_s * found.both.value_s;
+  json.value("delta_t_k", settling.delta_t_k);
+  json.derived("change", settling.change);
+  json.value("time_constant_ms", time_constant_ms);
+  json.derived("p_first_order", found.p_first_order);
+  json.value("points", found.points, step_point_fields);
+  if (json.reading()) found.both.value_s = time_constant_ms / gain_ms_of_s;
+}
+
+void gain_fields(JsonFields& json, GainControlMeasure& measure) {
+  json.value("unit", measure.unit);
+  json.derived("frames", measure.frames);
+  json.value("levels", measure.levels, gain_level_fields);
+  json.value("settling", measure.settling, gain_settling_fields);
 }
 
 }  // namespace
@@ -104,11 +82,7 @@ MeasureRow gain_control_row() {
               [](MeasureLines& out, const CameraMeasures& measures) {
                 if (measures.gain_control) add_gain_lines(out, *measures.gain_control);
               },
-          .to_json =
-              [](const CameraMeasures& measures) {
-                return measures.gain_control ? gain_json(*measures.gain_control) : Json();
-              },
-          .read = [](MeasureLines& out, const JsonReader& part) { out.gain_control = gain_from(part); },
+          .fields = measure_part<&MeasureLines::gain_control, gain_fields>,
           .valid = [](const MeasureLines& lines) { return !lines.gain_control || !lines.gain_control->levels.empty(); },
           .mistake = "'gain_control.levels': expected at least one level"};
 }

@@ -62,64 +62,59 @@ void add_geometry_lines(MeasureLines& out, const GeometryMeasure& measure) {
   out.geometry = measure;
 }
 
-Json geometry_json(const GeometryMeasure& measure) {
-  const PlateGeometry& found = measure.geometry;
-  Json places = Json::array();
-  for (const GeometryPlace& place : found.places) {
-    places.push_back({{"triangle", place.triangle},
-                      {"found_px", {json_number(place.found_px.x), json_number(place.found_px.y)}},
-                      {"residual_px", {json_number(place.residual_px.x), json_number(place.residual_px.y)}}});
-  }
-  return {{"plate", measure.plate},
-          {"frames", measure.frames},
-          {"set_delta_t_k", measure.set_delta_t_k},
-          {"distance_m", measure.distance_m},
-          {"distance_relative_u", json_number(measure.distance_relative_u)},
-          {"stated_ifov_mrad", measure.stated_ifov_mrad},
-          {"picture_px", {measure.picture.width, measure.picture.height}},
-          {"mm_per_px_x", estimate_json(found.mm_per_px_x)},
-          {"mm_per_px_y", estimate_json(found.mm_per_px_y)},
-          {"centre_x_mm", estimate_json(found.centre_x_mm)},
-          {"centre_y_mm", estimate_json(found.centre_y_mm)},
-          {"rotation_deg", estimate_json(found.rotation_deg)},
-          {"keystone_x_percent", estimate_json(found.keystone_x_percent)},
-          {"keystone_y_percent", estimate_json(found.keystone_y_percent)},
-          {"distortion_percent", estimate_json(found.distortion_percent)},
-          {"residual_px", json_number(found.residual_px)},
-          {"farthest_px", json_number(found.farthest_px)},
-          {"corner_px", json_number(found.corner_px)},
-          {"places", places}};
+/// Describes a point as [x, y].
+void place_field(JsonFields& json, const std::string& key, cv::Point2d& point) {
+  Interval place{point.x, point.y};
+  json.value(key, place);
+  point = {place.low.value_or(0), place.high.value_or(0)};
 }
 
-void read_line_of_sight(const JsonReader& geometry, GeometryMeasure& found) {
-  found.plate = geometry.at("plate").text();
-  found.distance_m = geometry.at("distance_m").number();
-  found.distance_relative_u = geometry.at("distance_relative_u").optional_number();
-  found.stated_ifov_mrad = geometry.at("stated_ifov_mrad").number();
-  found.geometry.mm_per_px_x = estimate_from(geometry.at("mm_per_px_x"));
-  found.geometry.mm_per_px_y = estimate_from(geometry.at("mm_per_px_y"));
-  found.geometry.centre_x_mm = estimate_from(geometry.at("centre_x_mm"));
-  found.geometry.centre_y_mm = estimate_from(geometry.at("centre_y_mm"));
-  found.geometry.rotation_deg = estimate_from(geometry.at("rotation_deg"));
+void geometry_place_fields(JsonFields& json, GeometryPlace& place) {
+  json.value("triangle", place.triangle);
+  place_field(json, "found_px", place.found_px);
+  place_field(json, "residual_px", place.residual_px);
 }
 
-GeometryMeasure geometry_from(const JsonReader& geometry) {
-  const Interval size = geometry.at("picture_px").interval();
+/// Describes the size of the picture. A record that was edited may have any numbers.
+void picture_size_field(JsonFields& json, cv::Size& picture) {
+  json.derived("picture_px", std::vector{picture.width, picture.height});
+  if (!json.reading()) return;
   const auto pixels = [](const std::optional<double>& side) {
-    constexpr double most_px = 1e6;  // of a record that may have been edited
+    constexpr double most_px = 1e6;
     return static_cast<int>(std::clamp(side.value_or(0), 0.0, most_px));
   };
-  GeometryMeasure found;
-  found.picture = {pixels(size.low), pixels(size.high)};
+  Interval size;
+  json.value("picture_px", size);
+  picture = {pixels(size.low), pixels(size.high)};
+}
+
+void geometry_fields(JsonFields& json, GeometryMeasure& measure) {
+  PlateGeometry& found = measure.geometry;
   // Records of earlier versions have no line of sight; figures need none of these values.
-  if (!geometry.at_if_there("centre_x_mm").is_null()) read_line_of_sight(geometry, found);
-  for (const JsonReader& place : geometry.at("places").elements()) {
-    const Interval at = place.at("found_px").interval(), left = place.at("residual_px").interval();
-    found.geometry.places.push_back({place.at("triangle").text(),
-                                     {at.low.value_or(0), at.high.value_or(0)},
-                                     {left.low.value_or(0), left.high.value_or(0)}});
+  const bool line_of_sight = !json.reading() || json.has("centre_x_mm");
+  if (line_of_sight) {
+    json.value("plate", measure.plate);
+    json.derived("frames", measure.frames);
+    json.derived("set_delta_t_k", measure.set_delta_t_k);
+    json.value("distance_m", measure.distance_m);
+    json.value("distance_relative_u", measure.distance_relative_u);
+    json.value("stated_ifov_mrad", measure.stated_ifov_mrad);
   }
-  return found;
+  picture_size_field(json, measure.picture);
+  if (line_of_sight) {
+    json.value("mm_per_px_x", found.mm_per_px_x, estimate_fields);
+    json.value("mm_per_px_y", found.mm_per_px_y, estimate_fields);
+    json.value("centre_x_mm", found.centre_x_mm, estimate_fields);
+    json.value("centre_y_mm", found.centre_y_mm, estimate_fields);
+    json.value("rotation_deg", found.rotation_deg, estimate_fields);
+  }
+  json.derived("keystone_x_percent", found.keystone_x_percent, estimate_fields);
+  json.derived("keystone_y_percent", found.keystone_y_percent, estimate_fields);
+  json.derived("distortion_percent", found.distortion_percent, estimate_fields);
+  json.derived("residual_px", found.residual_px);
+  json.derived("farthest_px", found.farthest_px);
+  json.derived("corner_px", found.corner_px);
+  json.value("places", found.places, geometry_place_fields);
 }
 
 bool drawable(const GeometryMeasure& geometry) {
@@ -129,17 +124,14 @@ bool drawable(const GeometryMeasure& geometry) {
 }  // namespace
 
 MeasureRow geometry_row() {
-  return {
-      .key = "geometry",
-      .add =
-          [](MeasureLines& out, const CameraMeasures& measures) {
-            if (measures.geometry) add_geometry_lines(out, *measures.geometry);
-          },
-      .to_json =
-          [](const CameraMeasures& measures) { return measures.geometry ? geometry_json(*measures.geometry) : Json(); },
-      .read = [](MeasureLines& out, const JsonReader& part) { out.geometry = geometry_from(part); },
-      .valid = [](const MeasureLines& lines) { return !lines.geometry || drawable(*lines.geometry); },
-      .mistake = "'geometry.picture_px': expected numbers above 0"};
+  return {.key = "geometry",
+          .add =
+              [](MeasureLines& out, const CameraMeasures& measures) {
+                if (measures.geometry) add_geometry_lines(out, *measures.geometry);
+              },
+          .fields = measure_part<&MeasureLines::geometry, geometry_fields>,
+          .valid = [](const MeasureLines& lines) { return !lines.geometry || drawable(*lines.geometry); },
+          .mistake = "'geometry.picture_px': expected numbers above 0"};
 }
 
 }  // namespace todbench

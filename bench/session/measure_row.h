@@ -9,7 +9,7 @@
 
 #include "bench/session/measures_record.h"
 #include "bench/text/json.h"
-#include "bench/text/json_reader.h"
+#include "bench/text/json_fields.h"
 #include "tod/camera_measures/camera_measures.h"
 
 namespace todbench {
@@ -20,9 +20,11 @@ struct MeasureRow {
   /// Adds the quantities of the measure, and the measure itself if a figure or a table shows it; no effect if it was
   /// not taken.
   void (*add)(MeasureLines& out, const CameraMeasures& measures);
-  Json (*to_json)(const CameraMeasures& measures);  ///< null if it was not taken
-  /// Reads the numbers that figures and tables show; mistakes are recorded in the reader. Null: none are shown.
-  void (*read)(MeasureLines& out, const JsonReader& part) = nullptr;
+  /// Describes the part of a measure that figures and tables show. It is null if the measure was not taken; it is read
+  /// if it is present and not null.
+  void (*fields)(JsonFields& json, const std::string& key, MeasureLines& lines) = nullptr;
+  /// Returns the part of a measure without `fields`, which is not read; null if the measure was not taken.
+  Json (*to_json)(const CameraMeasures& measures) = nullptr;
   bool (*valid)(const MeasureLines& lines) = nullptr;  ///< checks the numbers read; null: always valid
   std::string_view mistake{};                          ///< sentence if they are not valid
 };
@@ -51,9 +53,15 @@ struct MeasureRow {
   return rows;
 }
 
-/// Returns {"value", "ci95"}.
-[[nodiscard]] Json estimate_json(const Estimate& found);
-/// Reads the value of estimate_json(); a missing limit of the interval is replaced by the value.
-[[nodiscard]] Estimate estimate_from(const JsonReader& found);
+/// MeasureRow::fields of the measure in a member of MeasureLines.
+template <auto Member, auto Describe>
+void measure_part(JsonFields& json, const std::string& key, MeasureLines& lines) {
+  json.later(key, lines.*Member, Describe);
+}
+
+/// Describes {"value", "ci95"}. A missing limit of the interval is replaced by the value.
+void estimate_fields(JsonFields& json, Estimate& found);
+/// Describes a frame after a step of the contrast: {"time_s", "left", "rising"}.
+void step_point_fields(JsonFields& json, StepPoint& point);
 
 }  // namespace todbench

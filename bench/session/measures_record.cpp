@@ -11,7 +11,6 @@
 #include "bench/plan/quantity.h"
 #include "bench/session/measure_row.h"
 #include "bench/text/base64.h"
-#include "bench/text/json_reader.h"
 
 namespace todbench {
 namespace {
@@ -56,72 +55,74 @@ std::string_view definition_of(const std::string& measure) {
   return quantity == nullptr ? std::string_view() : quantity->definition;
 }
 
-Json line_json(const MeasureLine& line) {
+void measure_line_fields(JsonFields& json, MeasureLine& line) {
+  json.value("measure", line.measure);
+  json.value("unit", line.unit);
   const std::string_view definition = definition_of(line.measure);
-  Json json{{"measure", line.measure},
-            {"unit", line.unit},
-            {"definition", definition.empty() ? Json() : Json(definition)},
-            {"value", json_number(line.value)},
-            {"ci95", json_interval(line.ci95)},
-            {"conditions", line.conditions}};
-  if (line.expanded) json["expanded_ci95"] = json_interval(*line.expanded);
-  return json;
+  json.derived("definition", definition.empty() ? Json() : Json(definition));
+  json.value("value", line.value);
+  json.value("ci95", line.ci95);
+  json.value("conditions", line.conditions);
+  json.if_any("expanded_ci95", line.expanded);
 }
 
-Json panels_json(const PlatePanels& panels) {
-  Json outlines = Json::array();
+void panels_fields(JsonFields& json, PlatePanels& panels) {
+  std::vector<std::vector<Interval>> outlines;
   for (const Polygon& outline : panels.outlines) {
-    Json corners = Json::array();
-    for (const cv::Point2d& p : outline) corners.push_back({json_number(p.x), json_number(p.y)});
-    outlines.push_back(std::move(corners));
+    outlines.emplace_back();
+    for (const cv::Point2d& p : outline) outlines.back().push_back({p.x, p.y});
   }
-  return {{"width", panels.width},
-          {"height", panels.height},
-          {"black_k", json_number(panels.black_k)},
-          {"white_k", json_number(panels.white_k)},
-          {"difference_k", json_number(panels.difference_k)},
-          {"outlines_px", outlines},
-          {"seen_png", panels.seen},
-          {"expected_png", panels.expected},
-          {"difference_png", panels.difference}};
-}
-
-PlatePanels panels_from(const JsonReader& picture) {
-  PlatePanels panels;
-  panels.width = static_cast<int>(picture.at("width").whole());
-  panels.height = static_cast<int>(picture.at("height").whole());
-  panels.black_k = picture.at("black_k").number();
-  panels.white_k = picture.at("white_k").number();
-  panels.difference_k = picture.at("difference_k").number();
-  for (const JsonReader& corners : picture.at("outlines_px").elements()) {
-    Polygon outline;
-    for (const JsonReader& corner : corners.elements()) {
-      const Interval place = corner.interval();
-      outline.emplace_back(place.low.value_or(0), place.high.value_or(0));
-    }
-    panels.outlines.push_back(std::move(outline));
+  json.value("width", panels.width);
+  json.value("height", panels.height);
+  json.value("black_k", panels.black_k);
+  json.value("white_k", panels.white_k);
+  json.value("difference_k", panels.difference_k);
+  json.value("outlines_px", outlines);
+  json.value("seen_png", panels.seen);
+  json.value("expected_png", panels.expected);
+  json.value("difference_png", panels.difference);
+  if (!json.reading()) return;
+  for (const std::vector<Interval>& outline : outlines) {
+    panels.outlines.emplace_back();
+    for (const Interval& p : outline) panels.outlines.back().emplace_back(p.low.value_or(0), p.high.value_or(0));
   }
-  panels.seen = picture.at("seen_png").text();
-  panels.expected = picture.at("expected_png").text();
-  panels.difference = picture.at("difference_png").text();
-  return panels;
 }
 
-Json lines_json(const MeasureLines& found) {
-  Json lines = Json::array();
-  for (const MeasureLine& line : found.lines) lines.push_back(line_json(line));
-  return lines;
+/// Describes a side. `measures`: source of the parts that are not read; null in reading.
+void side_fields(JsonFields& json, MeasureLines& side, const CameraMeasures* measures) {
+  json.value("quantities", side.lines, measure_line_fields);
+  json.derived("noise", nullptr);  // noise first, as in the files of every version
+  for (const MeasureRow& row : measure_table()) {
+    const std::string key(row.key);
+    if (row.fields != nullptr)
+      row.fields(json, key, side);
+    else if (measures != nullptr)
+      json.derived(key, row.to_json(*measures));
+  }
+  json.later("maps", side.maps, pixel_map_fields);
+  json.later("picture", side.picture, panels_fields);
+  json.value("reasons", side.reasons);
 }
 
-Json side_json(const std::optional<CameraMeasures>& measures) {
-  if (!measures) return nullptr;
-  const MeasureLines found = measure_lines(*measures);
-  Json json{{"quantities", lines_json(found)}, {"noise", nullptr}};  // noise first, as in the files of every version
-  for (const MeasureRow& row : measure_table()) json[std::string(row.key)] = row.to_json(*measures);
-  json["maps"] = pixel_maps_json(found.maps);
-  json["picture"] = found.picture ? panels_json(*found.picture) : Json();
-  json["reasons"] = found.reasons;
-  return json;
+/// Description of a record of both sides.
+struct SidesFields {
+  const CameraMeasures *main = nullptr, *twin = nullptr;  ///< sources of the parts that are not read
+
+  void operator()(JsonFields& json, SessionMeasures& record) const {
+    json.value("main", record.main, [&](JsonFields& part, MeasureLines& side) { side_fields(part, side, main); });
+    json.value("twin", record.twin, [&](JsonFields& part, MeasureLines& side) { side_fields(part, side, twin); });
+  }
+};
+
+SidesFields fields_of(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin) {
+  return {main ? &*main : nullptr, twin ? &*twin : nullptr};
+}
+
+SessionMeasures lines_of(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin) {
+  SessionMeasures sides;
+  if (main) sides.main = measure_lines(*main);
+  if (twin) sides.twin = measure_lines(*twin);
+  return sides;
 }
 
 /// Returns whether all pictures that a page shows are valid.
@@ -133,26 +134,6 @@ bool drawable(const std::optional<MeasureLines>& side) {
          is_base64(panels.difference);
 }
 
-std::optional<MeasureLines> side_from(const JsonReader& side) {
-  if (side.is_null()) return std::nullopt;
-  MeasureLines found;
-  for (const JsonReader& line : side.at("quantities").elements()) {
-    found.lines.push_back({line.at("measure").text(), line.at("unit").text(), line.at("value").optional_number(),
-                           line.at("ci95").interval(), line.at("conditions").text()});
-    const JsonReader expanded = line.at_if_there("expanded_ci95");
-    if (!expanded.is_null()) found.lines.back().expanded = expanded.interval();
-  }
-  for (const MeasureRow& row : measure_table()) {
-    const JsonReader part = side.at_if_there(std::string(row.key));
-    if (row.read != nullptr && !part.is_null()) row.read(found, part);
-  }
-  const JsonReader picture = side.at_if_there("picture");
-  if (!picture.is_null()) found.picture = panels_from(picture);
-  found.maps = pixel_maps_from(side.at_if_there("maps"));
-  found.reasons = side.at("reasons").texts();
-  return found;
-}
-
 }  // namespace
 
 MeasureLine measure_line(std::string name, std::optional<double> value, const Interval& ci95, std::string conditions) {
@@ -161,14 +142,12 @@ MeasureLine measure_line(std::string name, std::optional<double> value, const In
   return {std::move(name), unit, value, ci95, std::move(conditions)};
 }
 
-Json estimate_json(const Estimate& found) {
-  return {{"value", json_number(found.value)}, {"ci95", {json_number(found.low), json_number(found.high)}}};
-}
-
-Estimate estimate_from(const JsonReader& found) {
-  const Interval interval = found.at("ci95").interval();
-  const double value = found.at("value").number();
-  return {value, interval.low.value_or(value), interval.high.value_or(value)};
+void estimate_fields(JsonFields& json, Estimate& found) {
+  Interval ci95 = found.interval();
+  json.value("value", found.value);
+  json.value("ci95", ci95);
+  found.low = ci95.low.value_or(found.value);
+  found.high = ci95.high.value_or(found.value);
 }
 
 MeasureLines measure_lines(const CameraMeasures& measures) {
@@ -187,18 +166,26 @@ std::vector<MeasuredQuantity> quantities_of(const MeasureLines& lines) {
 }
 
 Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin) {
-  return {{"main", side_json(main)}, {"twin", side_json(twin)}};
+  return printed_json(lines_of(main, twin), fields_of(main, twin));
 }
 
-Json measures_json(const MeasureLines& main) {
-  return {{"main", {{"quantities", lines_json(main)}, {"maps", pixel_maps_json(main.maps)}, {"reasons", main.reasons}}},
-          {"twin", nullptr}};
+Result<Json> measures_record(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin) {
+  return json_of(lines_of(main, twin), fields_of(main, twin));
+}
+
+Result<Json> measures_record(const MeasureLines& main) {
+  return json_of(main, [](JsonFields& json, MeasureLines& described) {
+    json.value("main", described, [](JsonFields& part, MeasureLines& side) {
+      part.value("quantities", side.lines, measure_line_fields);
+      part.value("maps", side.maps, pixel_map_fields);
+      part.value("reasons", side.reasons);
+    });
+    json.derived("twin", nullptr);
+  });
 }
 
 Result<SessionMeasures> measures_from(const Json& record) {
-  const JsonReader reader(record);
-  SessionMeasures measures{side_from(reader.at("main")), side_from(reader.at("twin"))};
-  TODBENCH_TRY_VOID(reader.finish());
+  TODBENCH_TRY(SessionMeasures measures, from_json<SessionMeasures>(record, SidesFields{}));
   if (!drawable(measures.main) || !drawable(measures.twin))
     return fail(ErrorCode::invalid_input, "'picture': expected three PNG files of the same size as base64");
   for (const MeasureRow& row : measure_table()) {

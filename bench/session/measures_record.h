@@ -78,8 +78,11 @@ struct SessionMeasures {
 /// {...}, "latency": {...}, "mrtd": {...}, "gain_control": {...}, "maps": [...], "picture": {...}, "reasons": [...]},
 /// "twin": the same or null}.
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
-/// Returns the record of one camera as "main", with quantities, maps and reasons only.
-[[nodiscard]] Json measures_json(const MeasureLines& main);
+/// Returns the same for a file. Errors: `internal` with the key (a number that is not finite).
+[[nodiscard]] Result<Json> measures_record(const std::optional<CameraMeasures>& main,
+                                           const std::optional<CameraMeasures>& twin);
+/// Returns the record of one camera as "main", with quantities, maps and reasons only. Errors: as above.
+[[nodiscard]] Result<Json> measures_record(const MeasureLines& main);
 /// Parses a record. Errors: `invalid_input` with the key (incomplete record, wrong type).
 [[nodiscard]] Result<SessionMeasures> measures_from(const Json& record);
 

@@ -77,85 +77,53 @@ void add_mrtd_lines(MeasureLines& out, const MrtdMeasure& mrtd) {
   out.mrtd = mrtd;
 }
 
-Json point_json(const MrtdMeasure& mrtd, const MrtdPoint& point) {
-  Json shares = Json::array();
-  for (std::size_t i = 0; i < std::min(point.positive_share.size(), point.negative_share.size()); ++i) {
-    shares.push_back({{"delta_t_k", json_number(mrtd.contrast_k[i])},
-                      {"positive", json_number(point.positive_share[i])},
-                      {"negative", json_number(point.negative_share[i])}});
-  }
-  Json json{{"place", point.place},
-            {"axis", to_string(point.axis)},
-            {"frequency_per_pitch", json_number(point.frequency_per_pitch)},
-            {"frequency_per_mrad", json_number(point.frequency_per_pitch / mrtd.pitch_mrad)},
-            {"size_px", json_number(point.size_px)},
-            {"positive_k", json_number(point.positive_k)},
-            {"negative_k", json_number(point.negative_k)},
-            {"threshold_k", json_number(point.threshold_k)},
-            {"ci95_k", json_interval(point.ci95)},
-            {"best_phase_k", json_number(point.best_phase_k)},
-            {"best_phase_ci95_k", json_interval(point.best_phase_ci95)},
-            {"best_phase_px", json_number(point.best_phase)},
-            {"reason", point.reason.empty() ? Json() : Json(point.reason)},
-            {"proportion_correct", shares}};
-  add_spread(json, "threshold_spread_k", point.spread_k);
-  return json;
+/// Shares of correct decisions at a contrast.
+struct MrtdShares {
+  double delta_t_k = 0, positive = 0, negative = 0;
+};
+void mrtd_shares_fields(JsonFields& json, MrtdShares& shares) {
+  json.value("delta_t_k", shares.delta_t_k);
+  json.value("positive", shares.positive);
+  json.value("negative", shares.negative);
 }
 
-Json mrtd_json(const MrtdMeasure& mrtd) {
-  Json bars = Json::array(), spots = Json::array();
-  for (const MrtdPoint& point : mrtd.bars) bars.push_back(point_json(mrtd, point));
-  for (const MrtdPoint& point : mrtd.spots) spots.push_back(point_json(mrtd, point));
-  return {{"plate", mrtd.plate},
-          {"observer", mrtd.observer},
-          {"frames", mrtd.frames},
-          {"set_ups", mrtd.set_ups},
-          {"mountings", mrtd.mountings},
-          {"pitch_mrad", mrtd.pitch_mrad},
-          {"stated_near_per_pitch", mrtd.frequency_per_pitch},
-          {"stated_spot_px", mrtd.spot_px},
-          {"bars", bars},
-          {"spots", spots}};
+std::vector<MrtdShares> mrtd_shares(const MrtdMeasure& mrtd, const MrtdPoint& point) {
+  std::vector<MrtdShares> shares;
+  for (std::size_t i = 0; i < std::min(point.positive_share.size(), point.negative_share.size()); ++i)
+    shares.push_back({mrtd.contrast_k[i], point.positive_share[i], point.negative_share[i]});
+  return shares;
 }
 
-Interval interval_from(const JsonReader& from) {
-  const auto ends = from.elements();
-  if (ends.size() != 2) return {};
-  return {ends[0].optional_number(), ends[1].optional_number()};
+void mrtd_point_fields(JsonFields& json, const MrtdMeasure& mrtd, MrtdPoint& point) {
+  json.value("place", point.place);
+  json.value("axis", point.axis, std::array{EdgeAxis::x, EdgeAxis::y});
+  json.value("frequency_per_pitch", point.frequency_per_pitch);
+  json.derived("frequency_per_mrad", point.frequency_per_pitch / mrtd.pitch_mrad);
+  json.value("size_px", point.size_px);
+  json.value("positive_k", point.positive_k);
+  json.value("negative_k", point.negative_k);
+  json.value("threshold_k", point.threshold_k);
+  json.value("ci95_k", point.ci95);
+  json.value("best_phase_k", point.best_phase_k);
+  json.value("best_phase_ci95_k", point.best_phase_ci95);
+  json.value("best_phase_px", point.best_phase);
+  json.text_or_null("reason", point.reason);
+  json.derived("proportion_correct", mrtd_shares(mrtd, point), mrtd_shares_fields);
+  spread_if_any(json, "threshold_spread_k", point.spread_k);
 }
 
-MrtdPoint point_from(const JsonReader& from) {
-  MrtdPoint point;
-  point.place = from.at("place").text();
-  point.axis = from.at("axis").named(std::array{EdgeAxis::x, EdgeAxis::y});
-  point.frequency_per_pitch = from.at("frequency_per_pitch").number();
-  point.size_px = from.at("size_px").number();
-  point.positive_k = from.at("positive_k").optional_number();
-  point.negative_k = from.at("negative_k").optional_number();
-  point.threshold_k = from.at("threshold_k").optional_number();
-  point.ci95 = interval_from(from.at("ci95_k"));
-  point.best_phase_k = from.at("best_phase_k").optional_number();
-  point.best_phase_ci95 = interval_from(from.at("best_phase_ci95_k"));
-  point.best_phase = from.at("best_phase_px").number();
-  if (const JsonReader ends = from.at_if_there("threshold_spread_k"); !ends.is_null()) {
-    const Interval spread = interval_from(ends);
-    if (spread.low && spread.high) point.spread_k = std::pair(*spread.low, *spread.high);
-  }
-  if (const JsonReader reason = from.at("reason"); !reason.is_null()) point.reason = reason.text();
-  return point;
-}
-
-MrtdMeasure mrtd_from(const JsonReader& from) {
-  MrtdMeasure out;
-  out.plate = from.at("plate").text();
-  out.observer = from.at("observer").text();
-  out.frames = static_cast<int>(from.at("frames").whole());
-  out.set_ups = static_cast<int>(from.at("set_ups").whole());
-  out.mountings = static_cast<int>(from.at("mountings").whole());
-  out.pitch_mrad = from.at("pitch_mrad").number();
-  for (const JsonReader& one : from.at("bars").elements()) out.bars.push_back(point_from(one));
-  for (const JsonReader& one : from.at("spots").elements()) out.spots.push_back(point_from(one));
-  return out;
+void mrtd_fields(JsonFields& json, MrtdMeasure& mrtd) {
+  const auto point = [&](JsonFields& item, MrtdPoint& at) { mrtd_point_fields(item, mrtd, at); };
+  json.value("plate", mrtd.plate);
+  json.value("observer", mrtd.observer);
+  json.value("frames", mrtd.frames);
+  json.value("set_ups", mrtd.set_ups);
+  json.value("mountings", mrtd.mountings);
+  json.value("pitch_mrad", mrtd.pitch_mrad);
+  json.derived("stated_near_per_pitch", mrtd.frequency_per_pitch);
+  json.derived("stated_spot_px", mrtd.spot_px);
+  json.value("bars", mrtd.bars, point);
+  json.value("spots", mrtd.spots, point);
 }
 
 bool drawable(const MrtdMeasure& mrtd) {
@@ -173,8 +141,7 @@ MeasureRow mrtd_row() {
               [](MeasureLines& out, const CameraMeasures& measures) {
                 if (measures.mrtd) add_mrtd_lines(out, *measures.mrtd);
               },
-          .to_json = [](const CameraMeasures& measures) { return measures.mrtd ? mrtd_json(*measures.mrtd) : Json(); },
-          .read = [](MeasureLines& out, const JsonReader& part) { out.mrtd = mrtd_from(part); },
+          .fields = measure_part<&MeasureLines::mrtd, mrtd_fields>,
           .valid = [](const MeasureLines& lines) { return !lines.mrtd || drawable(*lines.mrtd); },
           .mistake = "'mrtd.bars': expected frequencies, thresholds and a pitch above 0"};
 }

@@ -64,61 +64,42 @@ void add_mtf(MeasureLines& out, const MtfMeasure& mtf) {
   out.mtf = mtf;
 }
 
-Json mtf_json(const MtfMeasure& mtf) {
-  Json edges = Json::array();
-  for (const EdgeMtf& edge : mtf.edges) {
-    Json intervals = Json::array();
-    for (std::size_t i = 0; i < edge.mtf.size(); ++i)
-      intervals.push_back(json_interval(mtf_interval(edge.low[i], edge.high[i])));
-    std::vector<double> per_mrad = edge.frequency_per_pitch;
-    for (double& f : per_mrad) f /= mtf.pitch_mrad;
-    edges.push_back({{"place", edge.place},
-                     {"axis", to_string(edge.axis)},
-                     {"sides", edge.sides},
-                     {"middle_px", {json_number(edge.middle_px.x), json_number(edge.middle_px.y)}},
-                     {"angle_deg", json_number(edge.angle_deg)},
-                     {"noise_over_step", json_number(edge.noise_over_step)},
-                     {"frequency_per_pitch", json_numbers(edge.frequency_per_pitch)},
-                     {"frequency_per_mrad", json_numbers(per_mrad)},
-                     {"mtf", json_numbers(edge.mtf)},
-                     {"mtf_ci95", intervals},
-                     {"widest_halo_pitch", json_number(edge.widest_halo_pitch)},
-                     {"halo_allowance", json_number(edge.halo_allowance)},
-                     {"wide_halo_ci95", {json_number(edge.wide_halo_least), json_number(edge.wide_halo_most)}},
-                     {"mtf50_per_pitch", json_number(edge.mtf50_per_pitch)},
-                     {"model", edge.model.empty() ? Json() : json_numbers(edge.model)}});
-  }
-  return {{"plate", mtf.plate},
-          {"frames", mtf.frames},
-          {"set_delta_t_k", mtf.set_delta_t_k},
-          {"said_delta_t_k", json_number(mtf.said_delta_t_k)},
-          {"pitch_mrad", mtf.pitch_mrad},
-          {"stated_at_per_pitch", mtf.frequency_per_pitch},
-          {"edges", edges}};
+void mtf_edge_fields(JsonFields& json, EdgeMtf& edge, double pitch_mrad) {
+  std::vector<Interval> intervals;
+  for (std::size_t i = 0; i < edge.mtf.size(); ++i) intervals.push_back(mtf_interval(edge.low[i], edge.high[i]));
+  std::vector<double> per_mrad = edge.frequency_per_pitch;
+  for (double& f : per_mrad) f /= pitch_mrad;
+  std::optional<std::vector<double>> model;
+  if (!edge.model.empty()) model = edge.model;
+  json.value("place", edge.place);
+  json.value("axis", edge.axis, std::array{EdgeAxis::x, EdgeAxis::y});
+  json.value("sides", edge.sides);
+  json.derived("middle_px", Interval{edge.middle_px.x, edge.middle_px.y});
+  json.value("angle_deg", edge.angle_deg);
+  json.value("noise_over_step", edge.noise_over_step);
+  json.value("frequency_per_pitch", edge.frequency_per_pitch);
+  json.derived("frequency_per_mrad", per_mrad);
+  json.value("mtf", edge.mtf);
+  json.value("mtf_ci95", intervals);
+  json.derived("widest_halo_pitch", edge.widest_halo_pitch);
+  json.derived("halo_allowance", edge.halo_allowance);
+  json.derived("wide_halo_ci95", Interval{edge.wide_halo_least, edge.wide_halo_most});
+  json.value("mtf50_per_pitch", edge.mtf50_per_pitch);
+  json.value("model", model);
+  if (!json.reading()) return;
+  for (const Interval& interval : intervals)
+    edge.low.push_back(interval.low.value_or(0)), edge.high.push_back(interval.high.value_or(0));
+  edge.model = model.value_or(std::vector<double>());
 }
 
-MtfMeasure mtf_from(const JsonReader& mtf) {
-  MtfMeasure found;
-  found.pitch_mrad = mtf.at("pitch_mrad").number();
-  for (const JsonReader& edge : mtf.at("edges").elements()) {
-    EdgeMtf one;
-    one.place = edge.at("place").text();
-    one.axis = edge.at("axis").named(std::array{EdgeAxis::x, EdgeAxis::y});
-    one.sides = static_cast<int>(edge.at("sides").whole());
-    one.angle_deg = edge.at("angle_deg").number();
-    one.noise_over_step = edge.at("noise_over_step").number();
-    one.frequency_per_pitch = edge.at("frequency_per_pitch").numbers();
-    one.mtf = edge.at("mtf").numbers();
-    for (const JsonReader& sides : edge.at("mtf_ci95").elements()) {
-      const Interval interval = sides.interval();
-      one.low.push_back(interval.low.value_or(0)), one.high.push_back(interval.high.value_or(0));
-    }
-    one.mtf50_per_pitch = edge.at("mtf50_per_pitch").optional_number();
-    const JsonReader model = edge.at("model");
-    if (!model.is_null()) one.model = model.numbers();
-    found.edges.push_back(std::move(one));
-  }
-  return found;
+void mtf_fields(JsonFields& json, MtfMeasure& mtf) {
+  json.derived("plate", mtf.plate);
+  json.derived("frames", mtf.frames);
+  json.derived("set_delta_t_k", mtf.set_delta_t_k);
+  json.derived("said_delta_t_k", mtf.said_delta_t_k);
+  json.value("pitch_mrad", mtf.pitch_mrad);
+  json.derived("stated_at_per_pitch", mtf.frequency_per_pitch);
+  json.value("edges", mtf.edges, [&](JsonFields& item, EdgeMtf& edge) { mtf_edge_fields(item, edge, mtf.pitch_mrad); });
 }
 
 /// Returns whether each edge has a number at each frequency.
@@ -139,8 +120,7 @@ MeasureRow mtf_row() {
               [](MeasureLines& out, const CameraMeasures& measures) {
                 if (measures.mtf) add_mtf(out, *measures.mtf);
               },
-          .to_json = [](const CameraMeasures& measures) { return measures.mtf ? mtf_json(*measures.mtf) : Json(); },
-          .read = [](MeasureLines& out, const JsonReader& part) { out.mtf = mtf_from(part); },
+          .fields = measure_part<&MeasureLines::mtf, mtf_fields>,
           .valid = [](const MeasureLines& lines) { return !lines.mtf || complete(*lines.mtf); },
           .mistake = "'mtf.edges': expected lists of the same length and a pitch above 0"};
 }

@@ -95,30 +95,14 @@ std::vector<PixelMap> pixel_maps(const CameraMeasures& measures) {
   return maps;
 }
 
-Json pixel_maps_json(const std::vector<PixelMap>& maps) {
-  Json list = Json::array();
-  for (const PixelMap& map : maps) {
-    list.push_back({{"name", map.name},
-                    {"width", map.width},
-                    {"height", map.height},
-                    {"black_k", json_number(map.black_k)},
-                    {"white_k", json_number(map.white_k)},
-                    {"note", map.note},
-                    {"png", map.png}});
-  }
-  return list;
-}
-
-std::vector<PixelMap> pixel_maps_from(const JsonReader& maps) {
-  std::vector<PixelMap> out;
-  if (maps.is_null()) return out;
-  const std::vector<JsonReader> elements = maps.elements();
-  for (const JsonReader& map : elements) {
-    out.push_back({map.at("name").text(), static_cast<int>(map.at("width").whole()),
-                   static_cast<int>(map.at("height").whole()), map.at("black_k").number(), map.at("white_k").number(),
-                   map.at("png").text(), map.at("note").text()});
-  }
-  return out;
+void pixel_map_fields(JsonFields& json, PixelMap& map) {
+  json.value("name", map.name);
+  json.value("width", map.width);
+  json.value("height", map.height);
+  json.value("black_k", map.black_k);
+  json.value("white_k", map.white_k);
+  json.value("note", map.note);
+  json.value("png", map.png);
 }
 
 bool drawable(const std::vector<PixelMap>& maps) {

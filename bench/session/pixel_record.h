@@ -5,8 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/text/json.h"
-#include "bench/text/json_reader.h"
+#include "bench/text/json_fields.h"
 #include "tod/camera_measures/camera_measures.h"
 
 namespace todbench {
@@ -32,10 +31,8 @@ struct DefectColour {
 /// Returns the available maps: noise and pattern if noise was measured, triangles of every contrast, defects if pixels
 /// were checked.
 [[nodiscard]] std::vector<PixelMap> pixel_maps(const CameraMeasures& measures);
-/// Returns the maps as JSON.
-[[nodiscard]] Json pixel_maps_json(const std::vector<PixelMap>& maps);
-/// Parses the maps; empty if the reader has a mistake.
-[[nodiscard]] std::vector<PixelMap> pixel_maps_from(const JsonReader& maps);
+/// Describes a map in measures.json.
+void pixel_map_fields(JsonFields& json, PixelMap& map);
 /// Returns whether the maps are base64 PNG files of at least one pixel.
 [[nodiscard]] bool drawable(const std::vector<PixelMap>& maps);
 

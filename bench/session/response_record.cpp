@@ -16,11 +16,12 @@ Interval ms_interval(const StepTimeConstant& found) {
   return {.low = ms_of_s * found.low_s, .high = ms_of_s * found.high_s};
 }
 
-Json time_constant_json(const std::optional<StepTimeConstant>& found) {
-  if (!found) return nullptr;
-  return {{"value", json_number(ms_of_s * found->value_s)},
-          {"ci95", json_interval(ms_interval(*found))},
-          {"steps", found->steps}};
+void time_constant_fields(JsonFields& json, StepTimeConstant& found) {
+  double value_ms = ms_of_s * found.value_s;
+  json.value("value", value_ms);
+  json.derived("ci95", ms_interval(found));
+  json.derived("steps", found.steps);
+  if (json.reading()) found.value_s = value_ms / ms_of_s;
 }
 
 void add_response_lines(MeasureLines& out, const ResponseMeasure& measure) {
@@ -39,35 +40,27 @@ void add_response_lines(MeasureLines& out, const ResponseMeasure& measure) {
   out.response = measure;
 }
 
-Json response_json(const ResponseMeasure& measure) {
-  Json points = Json::array();
-  for (const StepPoint& point : measure.response.points)
-    points.push_back(
-        {{"time_s", json_number(point.time_s)}, {"left", json_number(point.left)}, {"rising", point.rising}});
-  return {{"delta_t_k", measure.delta_t_k},
-          {"frame_s", json_number(measure.frame_s)},
-          {"settling_ms", json_number(ms_of_s * measure.settling_s)},
-          {"dropped_steps", measure.dropped},
-          {"bright_pixels", measure.bright_pixels},
-          {"time_constant_ms", time_constant_json(measure.response.both)},
-          {"rise_ms", time_constant_json(measure.response.rise)},
-          {"fall_ms", time_constant_json(measure.response.fall)},
-          {"p_first_order", json_number(measure.response.p_first_order)},
-          {"points", points}};
-}
-
-ResponseMeasure response_from(const JsonReader& response) {
-  ResponseMeasure found;
-  found.response.both.value_s = response.at("time_constant_ms").at("value").number() / ms_of_s;
-  for (const JsonReader& point : response.at("points").elements()) {
-    found.response.points.push_back({.time_s = point.at("time_s").number(),
-                                     .left = point.at("left").number(),
-                                     .rising = point.at("rising").flag()});
-  }
-  return found;
+void response_fields(JsonFields& json, ResponseMeasure& measure) {
+  StepResponse& found = measure.response;
+  json.derived("delta_t_k", measure.delta_t_k);
+  json.derived("frame_s", measure.frame_s);
+  json.derived("settling_ms", ms_of_s * measure.settling_s);
+  json.derived("dropped_steps", measure.dropped);
+  json.derived("bright_pixels", measure.bright_pixels);
+  json.value("time_constant_ms", found.both, time_constant_fields);
+  json.derived("rise_ms", found.rise, time_constant_fields);
+  json.derived("fall_ms", found.fall, time_constant_fields);
+  json.derived("p_first_order", found.p_first_order);
+  json.value("points", found.points, step_point_fields);
 }
 
 }  // namespace
+
+void step_point_fields(JsonFields& json, StepPoint& point) {
+  json.value("time_s", point.time_s);
+  json.value("left", point.left);
+  json.value("rising", point.rising);
+}
 
 MeasureRow response_row() {
   return {
@@ -78,9 +71,7 @@ MeasureRow response_row() {
             if (const auto& model = measures.response_model_ms)
               out.lines.push_back(measure_line("response_time_model", *model, {}, "time constant of the sensor model"));
           },
-      .to_json =
-          [](const CameraMeasures& measures) { return measures.response ? response_json(*measures.response) : Json(); },
-      .read = [](MeasureLines& out, const JsonReader& part) { out.response = response_from(part); }};
+      .fields = measure_part<&MeasureLines::response, response_fields>};
 }
 
 }  // namespace todbench

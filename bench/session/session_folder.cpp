@@ -300,11 +300,13 @@ Result<void> SessionFolder::write_measures(const std::optional<CameraMeasures>& 
   if (main && main->mrtd && !main->mrtd->kept.pictures.empty()) {
     TODBENCH_TRY_VOID(write_kept_bars(folder_, main->mrtd->kept));
   }
-  return write_measures(measures_json(main, twin));
+  return write_measures(measures_record(main, twin));
 }
 
-Result<void> SessionFolder::write_measures(Json record) {
-  const std::vector<MeasurePicture> pictures = take_pictures(record);
+Result<void> SessionFolder::write_measures(Result<Json> record) {
+  const std::filesystem::path file = folder_ / "measures.json";
+  if (!record) return fail(file.string(), record.error());
+  const std::vector<MeasurePicture> pictures = take_pictures(*record);
   if (!pictures.empty()) {
     std::error_code problem;
     std::filesystem::create_directories(folder_ / pictures_folder, problem);
@@ -314,7 +316,7 @@ Result<void> SessionFolder::write_measures(Json record) {
   for (const MeasurePicture& picture : pictures) {
     TODBENCH_TRY_VOID(write_file_atomically(folder_ / picture.file, picture.png));
   }
-  return write_file_atomically(folder_ / "measures.json", to_page(record));
+  return write_file_atomically(file, to_page(*record));
 }
 
 Result<void> SessionFolder::write_verdict(const Verdict& verdict) {

@@ -73,8 +73,8 @@ class SessionFolder {
   /// Writes measures.json and its pictures in pictures/.
   [[nodiscard]] Result<void> write_measures(const std::optional<CameraMeasures>& main,
                                             const std::optional<CameraMeasures>& twin);
-  /// Writes a record of measures_json() in the same way.
-  [[nodiscard]] Result<void> write_measures(Json record);
+  /// Writes a record of measures_record() in the same way. Errors: also the error of the record.
+  [[nodiscard]] Result<void> write_measures(Result<Json> record);
   /// Writes verdict.json.
   [[nodiscard]] Result<void> write_verdict(const Verdict& verdict);
   /// Writes report.html.

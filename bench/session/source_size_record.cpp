@@ -37,49 +37,45 @@ void add_source_lines(MeasureLines& out, const CameraMeasures& measures) {
   out.source = source;
 }
 
-Json source_json(const SourceSizeMeasure& source) {
-  Json points = Json::array(), curve = Json::array();
-  for (const SourceSizePoint& point : source.effect.points) {
-    points.push_back({{"place", point.place},
-                      {"method", point.spot ? "inverse" : "direct"},
-                      {"size_px", json_number(point.size_px)},
-                      {"ratio", estimate_json(point.ratio)},
-                      {"fitted", json_number(point.fitted)}});
-  }
-  for (std::size_t i = 0; i < source.effect.size_px.size(); ++i)
-    curve.push_back(
-        {{"size_px", json_number(source.effect.size_px[i])}, {"ratio", estimate_json(source.effect.ratio[i])}});
-  return {{"plate", source.plate},
-          {"frames", source.frames},
-          {"set_delta_t_k", source.set_delta_t_k},
-          {"said_delta_t_k", json_number(source.said_delta_t_k)},
-          {"stated_px", source.stated_px},
-          {"reference_px", json_number(source.effect.reference_px)},
-          {"reference_k", json_number(source.effect.reference_k)},
-          {"reference_u_k", json_number(source.effect.reference_u_k)},
-          {"chi2", json_number(source.effect.chi2)},
-          {"degrees_of_freedom", source.effect.degrees_of_freedom},
-          {"consistent", source.effect.consistent},
-          {"points", points},
-          {"curve", curve}};
+void source_point_fields(JsonFields& json, SourceSizePoint& point) {
+  std::string method = point.spot ? "inverse" : "direct";
+  json.value("place", point.place);
+  json.value("method", method);
+  json.value("size_px", point.size_px);
+  json.value("ratio", point.ratio, estimate_fields);
+  json.value("fitted", point.fitted);
+  point.spot = method == "inverse";
 }
 
-SourceSizeMeasure source_from(const JsonReader& source) {
-  SourceSizeMeasure out;
-  out.stated_px = source.at("stated_px").number();
-  out.effect.reference_px = source.at("reference_px").number();
-  for (const JsonReader& point : source.at("points").elements()) {
-    out.effect.points.push_back({.place = point.at("place").text(),
-                                 .spot = point.at("method").text() == "inverse",
-                                 .size_px = point.at("size_px").number(),
-                                 .ratio = estimate_from(point.at("ratio")),
-                                 .fitted = point.at("fitted").number()});
-  }
-  for (const JsonReader& place : source.at("curve").elements()) {
-    out.effect.size_px.push_back(place.at("size_px").number());
-    out.effect.ratio.push_back(estimate_from(place.at("ratio")));
-  }
-  return out;
+/// A point of the curve.
+struct SourceRatio {
+  double size_px = 0;
+  Estimate ratio{};
+};
+void source_ratio_fields(JsonFields& json, SourceRatio& at) {
+  json.value("size_px", at.size_px);
+  json.value("ratio", at.ratio, estimate_fields);
+}
+
+void source_fields(JsonFields& json, SourceSizeMeasure& source) {
+  SourceSize& effect = source.effect;
+  std::vector<SourceRatio> curve;
+  for (std::size_t i = 0; i < effect.size_px.size(); ++i) curve.push_back({effect.size_px[i], effect.ratio[i]});
+  json.derived("plate", source.plate);
+  json.derived("frames", source.frames);
+  json.derived("set_delta_t_k", source.set_delta_t_k);
+  json.derived("said_delta_t_k", source.said_delta_t_k);
+  json.value("stated_px", source.stated_px);
+  json.value("reference_px", effect.reference_px);
+  json.derived("reference_k", effect.reference_k);
+  json.derived("reference_u_k", effect.reference_u_k);
+  json.derived("chi2", effect.chi2);
+  json.derived("degrees_of_freedom", effect.degrees_of_freedom);
+  json.derived("consistent", effect.consistent);
+  json.value("points", effect.points, source_point_fields);
+  json.value("curve", curve, source_ratio_fields);
+  if (!json.reading()) return;
+  for (const SourceRatio& at : curve) effect.size_px.push_back(at.size_px), effect.ratio.push_back(at.ratio);
 }
 
 }  // namespace
@@ -90,9 +86,7 @@ MeasureRow source_size_row() {
               [](MeasureLines& out, const CameraMeasures& measures) {
                 if (measures.source) add_source_lines(out, measures);
               },
-          .to_json =
-              [](const CameraMeasures& measures) { return measures.source ? source_json(*measures.source) : Json(); },
-          .read = [](MeasureLines& out, const JsonReader& part) { out.source = source_from(part); },
+          .fields = measure_part<&MeasureLines::source, source_fields>,
           .valid =
               [](const MeasureLines& lines) {
                 return !lines.source ||

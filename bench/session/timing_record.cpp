@@ -31,21 +31,12 @@ Json timing_json(const TimingMeasure& timing) {
           {"longest_gap", timing.longest_gap}};
 }
 
-Json latency_json(const LatencyMeasure& latency) {
-  return {{"speed_mm_s", json_number(latency.speed_mm_s)},
-          {"runs_ms", json_numbers(latency.runs_ms)},
-          {"frames_ms", json_numbers(latency.frames_ms)},
-          {"latency_ms", estimate_json(latency.latency_ms)}};
-}
-
-/// Records of earlier versions have no frames.
-LatencyMeasure latency_from(const JsonReader& part) {
-  LatencyMeasure out;
-  const JsonReader frames = part.at_if_there("frames_ms");
-  if (frames.is_null()) return out;
-  for (const JsonReader& frame : frames.elements()) out.frames_ms.push_back(frame.number());
-  out.latency_ms = estimate_from(part.at("latency_ms"));
-  return out;
+void latency_fields(JsonFields& json, LatencyMeasure& latency) {
+  json.derived("speed_mm_s", latency.speed_mm_s);
+  json.derived("runs_ms", latency.runs_ms);
+  if (json.reading() && !json.has("frames_ms")) return;  // records of earlier versions have no frames
+  json.value("frames_ms", latency.frames_ms);
+  json.value("latency_ms", latency.latency_ms, estimate_fields);
 }
 
 }  // namespace
@@ -61,21 +52,18 @@ MeasureRow timing_row() {
 }
 
 MeasureRow latency_row() {
-  return {
-      .key = "latency",
-      .add =
-          [](MeasureLines& out, const CameraMeasures& measures) {
-            if (!measures.latency) return;
-            const LatencyMeasure& latency = *measures.latency;
-            out.lines.push_back(measure_line("latency", latency.latency_ms.value, latency.latency_ms.interval(),
-                                             fmt::format("{} runs of the stage at {:.4g} mm/s, with the time "
-                                                         "constant and half of the exposure of the detector",
-                                                         latency.runs_ms.size(), latency.speed_mm_s)));
-            out.latency = latency;
-          },
-      .to_json =
-          [](const CameraMeasures& measures) { return measures.latency ? latency_json(*measures.latency) : Json(); },
-      .read = [](MeasureLines& out, const JsonReader& part) { out.latency = latency_from(part); }};
+  return {.key = "latency",
+          .add =
+              [](MeasureLines& out, const CameraMeasures& measures) {
+                if (!measures.latency) return;
+                const LatencyMeasure& latency = *measures.latency;
+                out.lines.push_back(measure_line("latency", latency.latency_ms.value, latency.latency_ms.interval(),
+                                                 fmt::format("{} runs of the stage at {:.4g} mm/s, with the time "
+                                                             "constant and half of the exposure of the detector",
+                                                             latency.runs_ms.size(), latency.speed_mm_s)));
+                out.latency = latency;
+              },
+          .fields = measure_part<&MeasureLines::latency, latency_fields>};
 }
 
 }  // namespace todbench

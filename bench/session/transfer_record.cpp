@@ -21,48 +21,35 @@ void add_transfer(MeasureLines& out, const TransferMeasure& transfer) {
   out.transfer = transfer;
 }
 
-Json transfer_json(const TransferMeasure& transfer) {
-  Json steps = Json::array();
-  for (const TransferStep& step : transfer.steps) {
-    steps.push_back({{"set_delta_t_k", step.set_delta_t_k},
-                     {"said_delta_t_k", json_number(step.said_delta_t_k)},
-                     {"seen_delta_t_k", json_number(step.seen_delta_t_k)},
-                     {"seen_u_k", json_number(step.seen_u_k)}});
-  }
-  return {{"frames_each", transfer.frames_each},
-          {"steps", steps},
-          {"slope", json_number(transfer.line.slope)},
-          {"slope_u", json_number(transfer.line.slope_u)},
-          {"offset_k", json_number(transfer.line.offset)},
-          {"chi2", json_number(transfer.line.chi2)},
-          {"degrees_of_freedom", transfer.line.degrees_of_freedom},
-          {"p", json_number(transfer.line.p)},
-          {"nonlinearity_percent", json_number(transfer.line.nonlinearity_percent)}};
+void transfer_step_fields(JsonFields& json, TransferStep& step) {
+  json.value("set_delta_t_k", step.set_delta_t_k);
+  json.value("said_delta_t_k", step.said_delta_t_k);
+  json.value("seen_delta_t_k", step.seen_delta_t_k);
+  json.value("seen_u_k", step.seen_u_k);
 }
 
-TransferMeasure transfer_from(const JsonReader& transfer) {
-  TransferMeasure found;
-  found.line.slope = transfer.at("slope").number();
-  found.line.offset = transfer.at("offset_k").number();
-  for (const JsonReader& step : transfer.at("steps").elements()) {
-    found.steps.push_back({step.at("set_delta_t_k").number(), step.at("said_delta_t_k").number(),
-                           step.at("seen_delta_t_k").number(), step.at("seen_u_k").number()});
-  }
-  return found;
+void transfer_fields(JsonFields& json, TransferMeasure& transfer) {
+  SignalTransfer& line = transfer.line;
+  json.derived("frames_each", transfer.frames_each);
+  json.value("steps", transfer.steps, transfer_step_fields);
+  json.value("slope", line.slope);
+  json.derived("slope_u", line.slope_u);
+  json.value("offset_k", line.offset);
+  json.derived("chi2", line.chi2);
+  json.derived("degrees_of_freedom", line.degrees_of_freedom);
+  json.derived("p", line.p);
+  json.derived("nonlinearity_percent", line.nonlinearity_percent);
 }
 
 }  // namespace
 
 MeasureRow transfer_row() {
-  return {
-      .key = "transfer",
-      .add =
-          [](MeasureLines& out, const CameraMeasures& measures) {
-            if (measures.transfer) add_transfer(out, *measures.transfer);
-          },
-      .to_json =
-          [](const CameraMeasures& measures) { return measures.transfer ? transfer_json(*measures.transfer) : Json(); },
-      .read = [](MeasureLines& out, const JsonReader& part) { out.transfer = transfer_from(part); }};
+  return {.key = "transfer",
+          .add =
+              [](MeasureLines& out, const CameraMeasures& measures) {
+                if (measures.transfer) add_transfer(out, *measures.transfer);
+              },
+          .fields = measure_part<&MeasureLines::transfer, transfer_fields>};
 }
 
 }  // namespace todbench
