@@ -159,20 +159,19 @@ Result<std::string> public_key_of(SigningProgram with, const std::string& secret
   return read_text_file(out);
 }
 
-Result<SessionSignature> read_signature(const std::filesystem::path& folder) {
-  const auto file = folder / signature_record;
-  TODBENCH_TRY(const auto json, read_json_file(file));
-  const JsonReader reader(json);
+void signature_fields(JsonFields& json, SessionSignature& signature) {
   // Every schema that is accepted signs this record; another would hold for a changed time of signing.
-  reader.at("schema").expect(signature_schema);
-  SessionSignature signature;
-  signature.manifest_file_sha256 = reader.at("manifest_file_sha256").text();
-  signature.with = reader.at("with").named(signing_programs);
-  signature.signed_utc = reader.at("signed_utc").text();
-  signature.manifest_sha256 = reader.at("manifest_sha256").text();
-  signature.public_key = reader.at("public_key").text();
-  if (auto finished = reader.finish(); !finished) return fail(file.string(), finished.error());
-  return signature;
+  json.constant("schema", signature_schema);
+  json.value("with", signature.with, signing_programs);
+  json.value("signed_utc", signature.signed_utc);
+  json.value("manifest_sha256", signature.manifest_sha256);
+  json.value("manifest_file_sha256", signature.manifest_file_sha256);
+  json.derived("key_sha256", signature.key_sha256());
+  json.value("public_key", signature.public_key);
+}
+
+Result<SessionSignature> read_signature(const std::filesystem::path& folder) {
+  return read_record_file<SessionSignature>(folder / signature_record, signature_fields);
 }
 
 Result<Json> revisions_of(const std::filesystem::path& folder) {
@@ -284,15 +283,8 @@ Result<SessionSignature> sign_session(const std::filesystem::path& folder, Signi
   TODBENCH_TRY(made.manifest_file_sha256, sha256_of_file(folder / manifest_name));
   TODBENCH_TRY(auto public_key, public_key_of(with, argument(secret_key), stop));
   made.public_key = std::move(public_key);
-  const Json record{{"schema", signature_schema},
-                    {"with", to_string(with)},
-                    {"signed_utc", made.signed_utc},
-                    {"manifest_sha256", made.manifest_sha256},
-                    {"manifest_file_sha256", made.manifest_file_sha256},
-                    {"key_sha256", made.key_sha256()},
-                    {"public_key", made.public_key}};
   auto done = sign_in(folder, manifest_name, with, secret_key, stop);
-  if (done) done = write_file_atomically(folder / signature_record, to_page(record));
+  if (done) done = write_json_file(folder / signature_record, json_of(made, signature_fields));
   if (done) done = sign_in(folder, signature_record, with, secret_key, stop);
   if (!done) {
     std::error_code problem;
