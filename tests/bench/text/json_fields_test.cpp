@@ -215,6 +215,20 @@ TEST(JsonFields, WriteAnOptionalNumberThatIsNotFiniteAsNull) {
   }
 }
 
+TEST(JsonFields, WriteADerivedNumberThatIsNotFiniteAsNull) {
+  const Result<Json> written = json_of(Sample{}, [](JsonFields& json, Sample& sample) {
+    json.derived("number", not_a_number);
+    json.derived("numbers", std::vector{1.0, no_end});
+    json.derived("pair", Pair{not_a_number, 2}, pair_fields);
+    json.derived("absent", sample.absent, pair_fields);
+    json.derived("lamp", sample.lamp);
+  });
+
+  ASSERT_TRUE(written) << written.error().message;
+  EXPECT_EQ(to_line(*written),
+            R"({"number":null,"numbers":[1.0,null],"pair":{"a":null,"b":2},"absent":null,"lamp":"on"})");
+}
+
 TEST(JsonFile, IsNotWrittenIfTheRecordHasAMistake) {
   const testing::TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "sample.json";
