@@ -207,6 +207,32 @@ TEST_F(SignedSession, ARecordWithoutItsOwnSignatureIsRefused) {
   EXPECT_THAT(downgraded.error().message, HasSubstr("todbench-signature-2"));
 }
 
+TEST_F(SignedSession, ItsRecordHasEveryKey) {
+  const auto made = sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc);
+  ASSERT_TRUE(made) << made.error().message;
+  const std::string written = content_of(session_ / "signature.json");
+  EXPECT_EQ(written, to_page(Json{{"schema", "todbench-signature-2"},
+                                  {"with", "openssl"},
+                                  {"signed_utc", utc},
+                                  {"manifest_sha256", made->manifest_sha256},
+                                  {"manifest_file_sha256", made->manifest_file_sha256},
+                                  {"key_sha256", made->key_sha256()},
+                                  {"public_key", made->public_key}}));
+  const auto mistake_of = [&](const Json& record) {
+    std::ofstream(session_ / "signature.json") << to_page(record);
+    const auto check = check_signature(session_, key("mine.pub"));
+    return check ? std::string() : check.error().message;
+  };
+  for (const std::string name :
+       {"schema", "with", "signed_utc", "manifest_sha256", "manifest_file_sha256", "public_key"}) {
+    Json record = Json::parse(written);
+    record[name] = nullptr;
+    EXPECT_THAT(mistake_of(record), HasSubstr("signature.json: '" + name + "': expected a text"));
+    record.erase(name);
+    EXPECT_THAT(mistake_of(record), HasSubstr("signature.json: missing key '" + name + "'"));
+  }
+}
+
 TEST_F(SignedSession, WhatNoSignatureListsIsForeign) {
   ASSERT_TRUE(sign_session(session_, SigningProgram::openssl, key("mine.pem"), utc));
   std::filesystem::create_directories(session_ / "revisions");
