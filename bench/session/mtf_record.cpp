@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "bench/session/measure_row.h"
 #include "tod/measures/mtf50.h"
