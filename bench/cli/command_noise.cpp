@@ -12,6 +12,7 @@
 
 #include "acquisition/base/try.h"
 #include "acquisition/core/correction_watch.h"
+#include "acquisition/core/count_step.h"
 #include "acquisition/core/input_gate.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/noise_components.h"
@@ -48,6 +49,7 @@ struct Frames {
   double unit_per_count = 1;  ///< 0: unknown
   ByteOrderVerdict byte_order = ByteOrderVerdict::as_stated;
   cv::Mat1d saturated;  ///< frames in which a pixel was at either end of the counts
+  CountStep step;
 };
 
 /// In kelvin if the recording has a scale, otherwise in counts.
@@ -141,6 +143,7 @@ Result<Frames> frames_of(const std::string& id, Console& console) {
     // Frames of different sizes are rejected below.
     if (frames.saturated.size() == frame->counts.size())
       cv::add(frames.saturated, saturated_pixels(*frame), frames.saturated, cv::noArray(), CV_64F);
+    frames.step.add(frame->counts);
     if (segments.jumped()) jumps.push_back(frames.pictures.size());
     frames.pictures.push_back({*std::move(picture), frame->sequence, *segment});
   }
@@ -167,6 +170,8 @@ struct Found {
   TemporalNoise time;
   bool kelvin = false;
   double unit_per_count = 1, saturated_share = 0;
+  int counts_per_step = 1;
+  double clipped_share = 0;  ///< of EndValues
   int repeated = 0;
   ByteOrderVerdict byte_order = ByteOrderVerdict::as_stated;
 };
@@ -185,22 +190,27 @@ bool correlated(const TemporalNoise& noise) {
 
 /// The noise is so low that rounding makes it depend on the level between two counts.
 bool too_coarse(const Found& found) {
-  return noise_too_coarse(found.time.successive, found.unit_per_count);
+  return noise_too_coarse(found.time.successive, found.unit_per_count * found.counts_per_step);
 }
 
 bool clipped(const Found& found) {
   return noise_clipped(found.saturated_share);
 }
 
+bool clipped_below(const Found& found) {
+  return noise_clipped(found.clipped_share);
+}
+
 /// Whether the counts contain no noise that could be stated.
 bool no_number(const Found& found) {
-  return clipped(found) || too_coarse(found);
+  return clipped(found) || too_coarse(found) || clipped_below(found);
 }
 
 std::string_view verdict_of(const Found& found) {
   if (clipped(found)) return "saturated";
   if (moved(found.blocks)) return "scene_moved";
   if (too_coarse(found)) return "too_coarse";
+  if (clipped_below(found)) return "saturated";
   return correlated(found.time) ? "correlated" : "ok";
 }
 
@@ -345,13 +355,18 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
     console.note(fmt::format("{} of {} pixels never change or see a moving scene: all results exclude them", left_out,
                              time->usable.total()));
   const double saturated_share = cv::mean(frames->saturated, time->usable)[0] / count;
-  const Found found{*std::move(blocks), *std::move(time), frames->kelvin,    frames->unit_per_count,
-                    saturated_share,    frames->repeated, frames->byte_order};
+  EndValues ends;
+  for (const TimedPicture& picture : frames->pictures) ends.add(picture.picture, time->usable);
+  const Found found{*std::move(blocks),     *std::move(time), frames->kelvin,
+                    frames->unit_per_count, saturated_share,  frames->step.counts_per_step(),
+                    ends.clipped_share(),   frames->repeated, frames->byte_order};
   std::vector<NoiseAcuity> points;
   if (clipped(found)) {
     console.note(clipped_sentence(found.saturated_share));
   } else if (too_coarse(found)) {
-    console.note(std::string(too_coarse_sentence));
+    console.note(too_coarse_sentence(found.counts_per_step));
+  } else if (clipped_below(found)) {
+    console.note(clipped_below_sentence(found.clipped_share));
   } else if (moved(found.blocks)) {
     // Components and acuity would be those of the moving scene.
     console.note(

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "acquisition/base/try.h"
+#include "acquisition/core/count_step.h"
 #include "acquisition/core/input_gate.h"
 #include "bench/cli/commands.h"
 #include "bench/cli/noise_gates.h"
@@ -28,6 +29,8 @@ struct WholeRecording {
   double memory = 0;           ///< correlation of the pixels' noise in successive frames, if known
   double unit_per_count = 1;   ///< 0: unknown
   double saturated_share = 0;  ///< of all pixels of all frames, because every pixel counts in the components
+  CountStep step;
+  EndValues ends;
 };
 
 bool clipped(const WholeRecording& whole) {
@@ -36,12 +39,24 @@ bool clipped(const WholeRecording& whole) {
 
 bool too_coarse(const WholeRecording& whole) {
   const double variance = estimate_of(whole.table, NoiseComponent::tvh).variance;
-  return noise_too_coarse(std::sqrt(std::max(0.0, variance)), whole.unit_per_count);
+  return noise_too_coarse(std::sqrt(std::max(0.0, variance)), whole.unit_per_count * whole.step.counts_per_step());
+}
+
+bool clipped_below(const WholeRecording& whole) {
+  return noise_clipped(whole.ends.clipped_share());
+}
+
+/// Returns the reason why no noise is stated; empty if there is none.
+std::string reason_of(const WholeRecording& whole) {
+  if (clipped(whole)) return clipped_sentence(whole.saturated_share);
+  if (too_coarse(whole)) return too_coarse_sentence(whole.step.counts_per_step());
+  return clipped_below(whole) ? clipped_below_sentence(whole.ends.clipped_share()) : "";
 }
 
 std::string_view verdict_of(const WholeRecording& whole) {
   if (clipped(whole)) return "saturated";
   if (too_coarse(whole)) return "too_coarse";
+  if (clipped_below(whole)) return "saturated";
   return std::abs(whole.memory) > components_white_enough ? "correlated" : "ok";
 }
 
@@ -104,6 +119,8 @@ Result<WholeRecording> whole_recording(Console& console, const std::string& id, 
     last = frame->counts;
     if (cube.frames() == 0 && whole.kelvin) whole.unit_per_count = kelvin_per_count(*frame, source->info().scale);
     whole.saturated_share += cv::mean(saturated_pixels(*frame))[0];
+    whole.step.add(frame->counts);
+    whole.ends.add(cv::Mat1f(frame->counts), {});
     if (auto added = add(cube, *frame, whole.kelvin); !added)
       return fail(ErrorCode::invalid_input, added.error().message);
   }
@@ -123,7 +140,7 @@ Result<WholeRecording> whole_recording(Console& console, const std::string& id, 
 
 Json components_json(const WholeRecording& whole, const std::string& recording) {
   Json variances, intervals, deviations, squares, freedom, absent;
-  const bool stated = !clipped(whole) && !too_coarse(whole);
+  const bool stated = reason_of(whole).empty();
   for (const NoiseComponent component : noise_components) {
     const ComponentEstimate found = estimate_of(whole.table, component);
     const std::string name(to_string(component));
@@ -184,9 +201,9 @@ int run_noise_components(Console& console, const std::string& recording, AcrossC
                  ". The components assume independent frames, so tvh is too " +
                  (whole->memory > 0 ? "small and vh too large" : "large and vh too small"));
   }
-  const bool stated = !clipped(*whole) && !too_coarse(*whole);
-  if (!stated)
-    console.note(clipped(*whole) ? clipped_sentence(whole->saturated_share) : std::string(too_coarse_sentence));
+  const std::string reason = reason_of(*whole);
+  const bool stated = reason.empty();
+  if (!stated) console.note(reason);
   if (console.json())
     console.object(components_json(*whole, recording));
   else if (stated)

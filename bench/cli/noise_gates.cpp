@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/cli/noise_gates.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "acquisition/core/integrity_gate.h"
@@ -23,13 +24,58 @@ bool noise_clipped(double saturated_share) {
   return saturated_share > IntegrityOptions{}.max_saturated_share;
 }
 
-bool noise_too_coarse(double noise, double unit_per_count) {
-  return noise < least_measurable_noise_counts * unit_per_count;
+bool noise_too_coarse(double noise, double unit_per_step) {
+  return noise < least_measurable_noise_counts * unit_per_step;
+}
+
+void EndValues::End::add(float seen) {
+  if (pixels > 0 && seen == value) {
+    ++pixels;
+  } else if (pixels == 0 || seen > value) {
+    next_value = value, next_pixels = pixels;
+    value = seen, pixels = 1;
+  } else if (next_pixels > 0 && seen == next_value) {
+    ++next_pixels;
+  } else if (next_pixels == 0 || seen > next_value) {
+    next_value = seen, next_pixels = 1;
+  }
+}
+
+void EndValues::add(const cv::Mat1f& picture, const cv::Mat1b& usable) {
+  for (int row = 0; row < picture.rows; ++row) {
+    for (int column = 0; column < picture.cols; ++column) {
+      if (!usable.empty() && usable(row, column) == 0) continue;
+      high_.add(picture(row, column));
+      low_.add(-picture(row, column));
+      ++pixels_;
+    }
+  }
+}
+
+double EndValues::clipped_share() const {
+  double most = 0;
+  for (const End& end : {high_, low_}) {
+    const bool collected = end.pixels > end.next_pixels + 5 * std::sqrt(end.pixels + end.next_pixels);
+    if (collected) most = std::max(most, end.pixels / pixels_);
+  }
+  return most;
 }
 
 std::string clipped_sentence(double saturated_share) {
   return fixed(100 * saturated_share, 1) +
          " % of the pixels are saturated (lowest or highest count): their noise is clipped, so no noise is reported";
+}
+
+std::string clipped_below_sentence(double clipped_share) {
+  return fixed(100 * clipped_share, 1) +
+         " % of the pixels have the highest or the lowest value of the recording, more than the value next to it has: "
+         "their noise is clipped below full scale, so no noise is reported";
+}
+
+std::string too_coarse_sentence(int counts_per_step) {
+  if (counts_per_step <= 1) return "the noise is below half a count: the counts are too coarse to measure it";
+  return "the counts change in steps of " + std::to_string(counts_per_step) +
+         ", and the noise is below half a step: the steps are too coarse to measure it";
 }
 
 std::string frozen_sentence(int repeated) {

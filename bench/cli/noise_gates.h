@@ -4,7 +4,6 @@
 
 #include <opencv2/core.hpp>
 #include <string>
-#include <string_view>
 
 #include "acquisition/base/result.h"
 #include "acquisition/core/frame.h"
@@ -18,14 +17,35 @@ namespace todbench {
 
 /// Returns whether the share of saturated pixels is so large that the noise is clipped.
 [[nodiscard]] bool noise_clipped(double saturated_share);
-/// Returns whether the noise is so low that, after rounding to counts, it depends on the position of the level between
-/// two counts. `unit_per_count`: size of a count in the unit of the noise; 0: unknown.
-[[nodiscard]] bool noise_too_coarse(double noise, double unit_per_count);
+/// Returns whether the noise is so low that, after rounding to steps of the counts, it depends on the position of the
+/// level between two steps. `unit_per_step`: size of a step in the unit of the noise; 0: unknown.
+[[nodiscard]] bool noise_too_coarse(double noise, double unit_per_step);
+
+/// Counts the pixels at the highest and the lowest value of a recording. Noise spreads the values of a flat scene, so
+/// that fewer pixels have an end value than the value next to it. A device that clips below full scale collects pixels
+/// at an end value.
+class EndValues {
+ public:
+  /// Adds a picture. `usable`: pixels that are not 0 are counted; empty: all pixels.
+  void add(const cv::Mat1f& picture, const cv::Mat1b& usable);
+  /// Returns the share of pixels at an end value where they exceed the next value by five standard errors; 0: none.
+  [[nodiscard]] double clipped_share() const;
+
+ private:
+  struct End {
+    float value = 0, next_value = 0;
+    double pixels = 0, next_pixels = 0;
+    void add(float value);
+  };
+  End high_, low_;  ///< of the values, and of the values with the other sign
+  double pixels_ = 0;
+};
 /// Returns the message about clipped noise.
 [[nodiscard]] std::string clipped_sentence(double saturated_share);
-/// Message about noise below half a count.
-inline constexpr std::string_view too_coarse_sentence =
-    "the noise is below half a count: the counts are too coarse to measure it";
+/// Returns the message about noise that is clipped below full scale.
+[[nodiscard]] std::string clipped_below_sentence(double clipped_share);
+/// Returns the message about noise below half a step. `counts_per_step`: of CountStep.
+[[nodiscard]] std::string too_coarse_sentence(int counts_per_step);
 /// Returns a phrase with the number of frames that repeat the previous frame bit for bit; empty if no frame does.
 [[nodiscard]] std::string frozen_sentence(int repeated);
 /// Returns the error `invalid_input` for a recording with fewer than two different frames.

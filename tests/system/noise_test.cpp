@@ -109,16 +109,43 @@ std::string white_frames(double level, double sd, double most = 65535, const Fau
   return frames;
 }
 
+/// The same frames with counts rounded to multiples of a step, as of a camera that fills its words with zeros.
+std::string in_steps(std::string frames, int step) {
+  for (std::size_t i = 0; i + 1 < frames.size(); i += 2) {
+    const int count = static_cast<unsigned char>(frames[i]) + 256 * static_cast<unsigned char>(frames[i + 1]);
+    const int rounded = (count + step / 2) / step * step;
+    frames[i] = static_cast<char>(rounded & 255), frames[i + 1] = static_cast<char>(rounded >> 8);
+  }
+  return frames;
+}
+
+TEST(NoiseCommand, StatesTheNoiseOfCountsInStepsWhichItSpreads) {
+  const TemporaryFolder folder;
+  const std::string file =
+      folder.write("padded.raw", in_steps(white_frames(8000, 20), 16)).string() + "?width=80&height=60";
+
+  const Ended ended = todbench({"noise", file, "--json"});
+
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  // Noise of 20 counts, rounded to 16.
+  EXPECT_NEAR(one_object(ended)["temporal_noise"].get<double>(), std::hypot(20, 16 / std::sqrt(12)), 0.1);
+}
+
 TEST(NoiseCommand, StatesNoNoiseOfCountsThatHoldNone) {
   const TemporaryFolder folder;
   const std::string coarse = folder.write("coarse.raw", white_frames(8000, 0.3)).string() + "?width=80&height=60",
                     cut =
                         folder.write("cut.raw", white_frames(4090, 10, 4095)).string() + "?width=80&height=60&bits=12",
+                    below = folder.write("below.raw", white_frames(8000, 10, 8005)).string() + "?width=80&height=60",
+                    padded = folder.write("padded.raw", in_steps(white_frames(8000, 7), 16)).string() +
+                             "?width=80&height=60",
                     still = folder.write("still.raw", white_frames(8000, 0)).string() + "?width=80&height=60";
 
   for (const auto& [file, verdict] : {std::pair{coarse, "too_coarse"},
                                       {coarse + "&kelvin_per_count=0.1&offset_k=-500", "too_coarse"},
-                                      {cut, "saturated"}}) {
+                                      {cut, "saturated"},
+                                      {below, "saturated"},
+                                      {padded, "too_coarse"}}) {
     const Ended ended = todbench({"noise", file, "--contrast-over-noise", "8", "--json"});
 
     EXPECT_EQ(ended.code, 3) << ended.err;

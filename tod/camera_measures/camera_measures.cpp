@@ -507,9 +507,7 @@ class Run {
 
   void tell_pixels(CameraMeasures& measures, const NoiseSeries& series, const cv::Rect& field) {
     const cv::Rect window = pixel_window(field);
-    PixelScene scene{.shading = {},
-                     .responsivity = {},
-                     .unit_per_count = kelvin_per_count_at(source_.info().scale, series.noise.mean_k)};
+    PixelScene scene{.shading = {}, .responsivity = {}, .unit_per_count = series.kelvin_per_step};
     if (step_pictures_.size() > 2)
       scene.responsivity = responsivity_in_triangles(step_pictures_, plate(), where_, window, field);
     auto found = measure_pixels(series.pixel_frames, {source_.info().width, source_.info().height}, window,

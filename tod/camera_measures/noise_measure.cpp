@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "acquisition/base/try.h"
+#include "acquisition/core/count_step.h"
 #include "tod/camera_measures/pixel_measure.h"
 #include "tod/measures/shading.h"
 
@@ -43,6 +44,7 @@ class PixelSquares {
 struct Series {
   NoiseCube cube;
   PixelSquares squares;
+  CountStep step;
   NoiseSeries out;
 };
 
@@ -50,6 +52,7 @@ Result<void> add_frame(Series& series, const Frame& frame, const NoiseOptions& o
   TODBENCH_TRY(const cv::Mat1d kelvin, window_kelvin(frame, options.field));
   TODBENCH_TRY_VOID(series.cube.add(kelvin));
   series.squares.add(kelvin);
+  series.step.add(frame.counts);
   if (!options.pixel_window || series.out.pixel_frames.size() >= most_pixel_frames) return {};
   TODBENCH_TRY(const cv::Mat1d window, window_kelvin(frame, *options.pixel_window));
   cv::Mat1f single;
@@ -88,8 +91,11 @@ Result<void> sum_up(Series& series, const RadiometricScale& scale) {
   noise.lag1_correlation = series.cube.lag1_correlation();
   noise.pixel_sd_k = series.squares.sd();
   noise.pattern_k = mean - noise.mean_k - shading.surface;
-  if (const auto per_count = kelvin_per_count_at(scale, noise.mean_k))
-    noise.noise_counts = std::sqrt(std::max(0.0, temporal_variance(noise.table).variance)) / *per_count;
+  if (const auto per_count = kelvin_per_count_at(scale, noise.mean_k)) {
+    series.out.kelvin_per_step = *per_count * series.step.counts_per_step();
+    noise.noise_counts =
+        std::sqrt(std::max(0.0, temporal_variance(noise.table).variance)) / *series.out.kelvin_per_step;
+  }
   return {};
 }
 

@@ -40,7 +40,8 @@ struct NoiseOptions {
 /// Result of measure_series_noise().
 struct NoiseSeries {
   NoiseMeasure noise;
-  std::vector<cv::Mat1f> pixel_frames{};  ///< the pixel window in at most `most_pixel_frames` frames, in kelvin
+  std::optional<double> kelvin_per_step{};  ///< step of the counts in the frames (CountStep); empty: not known
+  std::vector<cv::Mat1f> pixel_frames{};    ///< the pixel window in at most `most_pixel_frames` frames, in kelvin
 };
 
 /// Takes frames of a constant scene, without a non-uniformity correction between them, and evaluates their noise.

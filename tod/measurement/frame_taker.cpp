@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <numeric>
 #include <utility>
 
 #include "acquisition/base/try.h"
+#include "acquisition/core/count_step.h"
 #include "tod/measures/temporal_noise.h"
 
 namespace todbench {
@@ -54,11 +54,9 @@ class FrameDifferences {
       row_means_ += variance_of_means(difference, 1);
       column_means_ += variance_of_means(difference, 0);
       size_ = difference.size();
-      learn_step(frame.counts);
     }
+    step_.add(frame.counts);
     old_.push_back({frame.sequence, kelvin});
-    // A copy, because a frame may hold one of the few buffers of its camera.
-    frame.counts.copyTo(last_counts_);
     if (old_.size() > std::max<std::size_t>(1, lag_)) old_.pop_front();
   }
 
@@ -69,7 +67,7 @@ class FrameDifferences {
     return first_order_correlation(later_.mean() / successive_.mean(), static_cast<int>(lag_));
   }
 
-  [[nodiscard]] int step() const { return step_; }
+  [[nodiscard]] int step() const { return step_.step(); }
 
   /// The mean over a row contains its share of the noise of single pixels, and so does that over a column.
   [[nodiscard]] std::optional<cv::Vec2d> row_and_column_variances() const {
@@ -91,21 +89,13 @@ class FrameDifferences {
     [[nodiscard]] double mean() const { return pairs > 0 ? squares / pairs : 0; }
   };
 
-  void learn_step(const cv::Mat1w& counts) {
-    for (int row = 0; row < counts.rows && step_ != 1; ++row) {
-      for (int column = 0; column < counts.cols && step_ != 1; ++column)
-        step_ = std::gcd(step_, std::abs(int{counts(row, column)} - int{last_counts_(row, column)}));
-    }
-  }
-
   FrameGain gain_;
   std::uint64_t lag_;
   std::deque<Old> old_;
-  cv::Mat1w last_counts_;
+  CountStep step_;
   AtLag successive_, later_, neighbours_;
   double row_means_ = 0, column_means_ = 0;  ///< sums of variances
   cv::Size size_;
-  int step_ = 0;
 };
 
 }  // namespace

@@ -15,7 +15,7 @@ struct EdgeLevels {
   double dark = 0, bright = 0;
   double width_pitch = 0;  ///< distance from 10 to 90 % of the step
   double steepest = 0;     ///< largest slope of the profile per pitch
-  double count_step = 0;   ///< 1 for a picture of integer counts, otherwise 0
+  double count_step = 0;   ///< step of a picture of integer counts, otherwise 0
 };
 
 /// Returns the clipped side ("bright", "dark"), if any. A side is clipped if its plateau has a single value next to

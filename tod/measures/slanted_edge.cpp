@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "acquisition/base/try.h"
@@ -50,6 +52,18 @@ struct Upright {
   double count_step = 0;
 };
 
+/// Returns the step of a picture of integer counts: their greatest common divisor above the lowest one. It is 1 if the
+/// picture has fewer than 32 such steps, because a synthetic edge may have two levels only. Returns 0 for other
+/// pictures.
+double count_step_of(const cv::Mat1d& picture, double low, double high) {
+  std::int64_t step = 0;
+  for (const double value : picture) {
+    if (value != std::round(value) || std::abs(value) > 1e15) return 0;
+    if (step != 1) step = std::gcd(step, static_cast<std::int64_t>(value - low));
+  }
+  return high - low >= 32 * static_cast<double>(step) ? static_cast<double>(step) : 1;
+}
+
 Result<Upright> upright(const cv::Mat1d& picture, const SlantedEdgeOptions& options) {
   if (picture.rows < 10 || picture.cols < 10)
     return fail(ErrorCode::invalid_input, "the picture is smaller than 10 x 10 pixels");
@@ -66,9 +80,7 @@ Result<Upright> upright(const cv::Mat1d& picture, const SlantedEdgeOptions& opti
   if (out.axis == EdgeAxis::y) p = p.t();
   const bool falls = mean_of(p.colRange(p.cols / 2, p.cols)) < mean_of(p.colRange(0, p.cols / 2));
   out.picture = falls ? cv::Mat1d((high - low) - p) : p;
-  const bool counts =
-      std::all_of(picture.begin(), picture.end(), [](double value) { return value == std::round(value); });
-  out.count_step = counts ? 1 : 0;
+  out.count_step = count_step_of(picture, low, high);
   return out;
 }
 
