@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "bench/forecast/prediction.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -393,6 +395,17 @@ std::vector<ContrastDesign> contrast_designs(const Plan& plan, const ExperimentI
   return out;
 }
 
+/// Returns a sentence if counts of the sensor do not reach the temperature of the target; empty otherwise.
+std::string beyond_range(const SensorSpec& sensor, double delta_t_k) {
+  const double highest_k = sensor.offset_k + sensor.kelvin_per_count * (std::exp2(sensor.bits) - 1);
+  const double surround_k = sensor.scene_temperature_k, target_k = surround_k + delta_t_k;
+  if (std::min(surround_k, target_k) > sensor.offset_k && std::max(surround_k, target_k) < highest_k) return "";
+  return fmt::format(
+      "at {} K the target of {:.6g} K in a surround of {:.6g} K leaves the range of the simulated sensor, {:.6g} to "
+      "{:.6g} K: pixels are saturated, and the result is unfit for a decision",
+      number_text(delta_t_k), target_k, surround_k, sensor.offset_k, highest_k);
+}
+
 }  // namespace
 
 Plan with_frames(Plan plan, const ExperimentInputs& inputs) {
@@ -452,7 +465,11 @@ Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& i
     for (const auto& level : levels_of(design.plan, inputs.plates)) point.trials += level.total;
     point.trials *= design.shown / design.plan.simulation.phases;
     const auto outlook = std::ranges::find(inputs.outlooks, delta_t_k, &ContrastOutlook::delta_t_k);
-    if (outlook != inputs.outlooks.end()) predict_interval(point, design.plan, inputs, *outlook);
+    std::string saturated = beyond_range(inputs.sensor, delta_t_k);
+    if (outlook != inputs.outlooks.end() && saturated.empty())
+      predict_interval(point, design.plan, inputs, *outlook);
+    else if (!saturated.empty())
+      out.warnings.push_back(std::move(saturated));
     out.contrasts.push_back(point);
   }
   const auto looks = adapt(out.contrasts, plan, inputs);
@@ -465,6 +482,7 @@ Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& i
     largest = std::max(largest, point.uncertainty_percent.value_or(0));
     if (point.uncertainty_percent) continue;
     all_identified = false;
+    if (!beyond_range(inputs.sensor, point.delta_t_k).empty()) continue;
     out.warnings.push_back("at " + number_text(point.delta_t_k) +
                            " K the sizes of the plates do not identify a threshold");
   }

@@ -2,6 +2,7 @@
 // What the measured contrast adds to the interval of S75 before it is measured.
 #include "bench/forecast/contrast_forecast.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -88,6 +89,26 @@ TEST(ContrastForecast, OfPresentationsWithOwnContrastsIsReducedByEachOfThem) {
 
   EXPECT_LT(*own.uncertainty_percent, once / 2);
   EXPECT_EQ(own.contrast_half_width, 0) << "more presentations reduce it";
+}
+
+TEST(PredictPlan, PromisesNothingAtAContrastBeyondTheRangeOfTheSensor) {
+  Plan plan = plan_with_camera(16);
+  plan.target.delta_t_k = {10, 0.23};
+  EffectPlanner planner;
+  auto inputs = experiment_inputs(LoadedPlan::load(plan).value(), planner).value();
+  const PlanPrediction whole = predict_plan(as_measured(plan), inputs).value();
+  inputs.sensor.offset_k = 295, inputs.sensor.bits = 10;  // to 305.23 K, in a surround of 300 K
+
+  const PlanPrediction cut = predict_plan(as_measured(plan), inputs).value();
+
+  ASSERT_EQ(cut.contrasts.size(), 2u);
+  EXPECT_TRUE(whole.contrasts[0].uncertainty_percent);
+  EXPECT_FALSE(cut.contrasts[0].uncertainty_percent);
+  EXPECT_FALSE(cut.contrasts[0].paired_se_ln_ratio);
+  EXPECT_FALSE(cut.figures.predicted_uncertainty_percent);
+  EXPECT_TRUE(cut.contrasts[1].uncertainty_percent);
+  ASSERT_EQ(cut.warnings.size(), whole.warnings.size() + 1);
+  EXPECT_THAT(cut.warnings.back(), ::testing::HasSubstr("310 K in a surround of 300 K leaves the range"));
 }
 
 }  // namespace
