@@ -90,7 +90,7 @@ tl::unexpected<Error> corrected(int frame) {
 tl::unexpected<Error> unsteady() {
   return fail(
       ErrorCode::invalid_input,
-      "the noise changes within the recording, or the scene moves: many successive frames differ much more than "
+      "the noise changes within the recording, or the scene moves: some successive frames differ much more than "
       "others; the components would not be those of the camera's noise. Record again, or accept this with "
       "--across-corrections");
 }
@@ -135,6 +135,7 @@ Result<WholeRecording> whole_recording(Console& console, const std::string& id, 
   whole.memory = cube.pixel_memory();
   if (const auto change = cube.abrupt_change(); change && across == AcrossCorrections::refuse)
     return cube.few_pairs_stand_out() ? corrected(*change) : unsteady();
+  if (cube.noise_changes() && across == AcrossCorrections::refuse) return unsteady();
   return whole;
 }
 

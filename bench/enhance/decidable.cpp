@@ -64,6 +64,11 @@ std::optional<JudgedPoint> judged_point(const PackageResult& result, double set_
 
 std::string why_not_linear(const PackageResult& result) {
   constexpr double least_difference = 0.05, least_certainty = 4;
+  // Pictures of the previous contrast have other gains, too.
+  const auto late = [](const AdequacyFinding& finding) { return finding.kind == FindingKind::picture_residue; };
+  for (const TodPoint& point : result.curve.points) {
+    if (point.adequacy && std::ranges::any_of(point.adequacy->findings, late)) return "";
+  }
   for (const TodPoint& first : result.curve.points) {
     for (const TodPoint& second : result.curve.points) {
       const auto a = judged_point(result, first.set_delta_t_k), b = judged_point(result, second.set_delta_t_k);

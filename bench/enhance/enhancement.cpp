@@ -18,6 +18,7 @@
 #include "bench/enhance/package_spread.h"
 #include "bench/enhance/stage_scan.h"
 #include "bench/enhance/unseen_differences.h"
+#include "bench/judgement/run_findings.h"
 #include "bench/plan/plan_options.h"
 #include "bench/run/recorded_bench.h"
 #include "bench/twin/experiment_inputs.h"
@@ -80,6 +81,7 @@ Result<TodCurve> curve_of(const Chains& chains, const PackageResult& result, con
                      plan.schedule.answers == AnswersChoice::automatic ? AnswersReason::package : AnswersReason::plan};
   }
   examine(curve, fit_options(plan));
+  if (measured != nullptr) (void)add_run_findings(curve, plan, {.constancy = measured->constancy});
   return curve;
 }
 

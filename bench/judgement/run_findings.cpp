@@ -66,6 +66,15 @@ std::vector<AdequacyFinding> changes(const RunFacts& run) {
                                     "% are allowed: the response of the camera or the target changed during the run",
                                     percent.value, percent.limit)));
   }
+  if (const auto change = presented_change(run.constancy.presented); change && change->beyond()) {
+    const ConstancyFigure percent{100 * change->value, 100 * change->limit};
+    out.push_back(
+        unfit(FindingKind::transfer_change, percent,
+              fmt::format("in the presentations the contrast differed by {:+.1f} % from the contrast measured "
+                          "before them, {:.1f} % are allowed: the target or the response of the camera "
+                          "changed after the measurement of the contrast",
+                          percent.value, percent.limit)));
+  }
   if (const auto change = noise_change(run.constancy.noise); change && change->beyond()) {
     const ConstancyFigure percent{percent_of_ln(change->value), percent_of_ln(change->limit)};
     out.push_back(unfit(FindingKind::noise_change, percent,
@@ -83,9 +92,11 @@ std::vector<AdequacyFinding> changes(const RunFacts& run) {
     const ConstancyFigure percent{100 * residue->share, 100 * residue->limit};
     out.push_back(
         unfit(FindingKind::picture_residue, percent,
-              fmt::format("the first frame after a change of the target still contained {:.1f} % of the difference "
-                          "from the previous picture, {:.1f} % are allowed: increase frames_after_change",
-                          percent.value, percent.limit)));
+              fmt::format("the first {} after a change of the target still contained {:.1f} % of the difference "
+                          "from the previous picture, {:.1f} % are allowed: increase {}",
+                          residue->behind_stages ? "judged picture" : "frame", percent.value, percent.limit,
+                          residue->behind_stages ? "settle_frames of the stages or frames_after_change"
+                                                 : "frames_after_change")));
   }
   return out;
 }

@@ -377,6 +377,13 @@ TEST(NoiseCommand, SaysThatTheNoiseOfAComponentsCubeChanges) {
 
   expect_refused(todbench({"noise", file + "?width=80&height=60", "--components-only"}), 2,
                  "the noise changes within the recording, or the scene moves");
+
+  // The median difference is one of the noisy half.
+  const std::string rising =
+      folder.write("rising.raw", quiet.substr(0, quiet.size() / 2 - 80 * 60 * 2) + noisy.substr(noisy.size() / 2))
+          .string();
+  expect_refused(todbench({"noise", rising + "?width=80&height=60", "--components-only"}), 2,
+                 "the noise changes within the recording");
 }
 
 TEST(NoiseCommand, WithholdsTheAcuityWhereTheSceneMoved) {

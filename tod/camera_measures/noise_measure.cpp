@@ -120,6 +120,8 @@ Result<NoiseSeries> measure_series_noise(FrameTaker& taker, const RadiometricSca
   if (const auto change = series->cube.abrupt_change())
     return fail(ErrorCode::integrity,
                 fmt::format("the picture changed abruptly before frame {} of the series", *change + 1));
+  if (series->cube.noise_changes())
+    return fail(ErrorCode::integrity, "the noise of a pixel differs between the two halves of the series");
   TODBENCH_TRY_VOID(sum_up(*series, scale));
   return std::move(series->out);
 }

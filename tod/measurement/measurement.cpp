@@ -76,6 +76,7 @@ class Run {
     result_.temporal_noise_counts = step_.noise_counts();
     result_.lag1_correlation = step_.lag1_correlation();
     result_.constancy = step_.constancy();
+    result_.constancy.presented = std::move(presented_contrasts_);
     result_.frames_used = taker_.used();
     result_.frames_rejected = taker_.rejected();
     result_.frames_lost = taker_.lost();
@@ -301,8 +302,16 @@ class Run {
                                                 .noise = seen_.camera_noise_k * std::abs(unit_per_k)},
                                                presentation_));
     plate_seen_ = seen;
+    if (state.wait == ContrastWait::settled) add_presented_contrast(seen);
     exposed.registration = asked.moved(seen.used_off_px);
     return exposed;
+  }
+
+  void add_presented_contrast(const PlateSeen& seen) {
+    if (!seen_.large || seen.amplitude_error == 0 || presented_contrasts_.empty()) return;
+    PresentedContrast& sum = presented_contrasts_.back();
+    sum.sum += seen.amplitude, sum.errors += seen.amplitude_error, sum.shared += seen.shared;
+    ++sum.presentations;
   }
 
   /// Expected place of the plate; after a change of plate, mounting or contrast also the effective contrast.
@@ -337,6 +346,10 @@ class Run {
                                             .judged_delta_t_k = seen_.contrast_k * seen_.judged->gain,
                                             .noise_k = seen_.noise_k,
                                             .scale = *seen_.judged});
+      if (seen_.large)
+        presented_contrasts_.push_back({.set_delta_t_k = state.delta_t_k,
+                                        .measured = seen_.large->amplitude,
+                                        .measured_error = seen_.large->amplitude_error});
       if (settled && !seen_.references.empty()) {
         result_.contrasts.push_back({state.delta_t_k, seen_.contrast_k, seen_.references});
         schedule_.observe_contrasts(contrast_errors(result_.contrasts));
@@ -457,6 +470,7 @@ class Run {
     std::size_t count = 0;
   };
   std::map<std::tuple<std::string, Mounting, double>, OwnContrasts> own_contrasts_;  ///< by set-up and point
+  std::vector<PresentedContrast> presented_contrasts_;
   std::optional<PlateSeen> plate_seen_;
   PresentedTarget presented_;   ///< last report of the target
   bool target_failed_ = false;  ///< the error of this presentation is the target's

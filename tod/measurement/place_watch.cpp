@@ -198,6 +198,7 @@ Result<PlateSeen> PlaceWatch::look(std::span<const Frame> frames, const TargetPl
                     .shared = 1 - own});
   seen.seen_px = seen.asked_px + (*found)->off_px;
   seen.standard_error_px = fit.standard_error;
+  seen.amplitude = fit.amplitude, seen.amplitude_error = fit.amplitude_error, seen.shared = 1 - own;
   double reach_px = 0;
   for (const PlateTriangle& t : mounted_plate.triangles)
     reach_px = std::max(reach_px, cv::norm(asked.pixel(t.position_mm) - seen.asked_px));

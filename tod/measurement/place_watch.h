@@ -37,6 +37,9 @@ struct PlateSeen {
   std::optional<cv::Point2d> seen_px;  ///< observed place in the frames; empty: too little contrast
   cv::Point2d standard_error_px;       ///< of seen_px
   cv::Point2d used_off_px{0, 0};       ///< place at which frames are judged minus the requested place
+  double amplitude = 0;                ///< common contrast of the large triangles, in the unit of window_kelvin()
+  double amplitude_error = 0;          ///< its standard error; 0: not measured
+  double shared = 1;  ///< share of this error's variance that recurs in the next presentation, due to fixed pattern
 };
 
 /// Measures the place in each presentation. Within a set-up, places are averaged over as many of the last presentations

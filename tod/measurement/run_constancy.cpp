@@ -127,6 +127,33 @@ std::optional<ConstancyFigure> largest_change(std::span<const PictureNoise> nois
   return found;
 }
 
+/// Noise with memory is in both the previous picture and the first frame: over all unchanged pixels it would look like
+/// a residue.
+constexpr double changed = 4;
+constexpr double residue_errors = 5, most_residue_error = 0.05;
+
+/// Returns the direction from a picture to the previous one, in the pixels that changed.
+cv::Mat1d direction_to(const cv::Mat1d& before, const cv::Mat1d& mean, double noise) {
+  const cv::Mat1d old = before - mean;
+  cv::Mat1d direction = old - cv::mean(old)[0];
+  direction.setTo(0, cv::abs(direction) < changed * noise);
+  return direction;
+}
+
+/// Returns the median over the pixels of their standard deviation in time.
+double median_deviation(std::span<const cv::Mat1w> pictures, const cv::Mat1d& mean) {
+  cv::Mat1d squares = cv::Mat1d::zeros(mean.size());
+  for (const cv::Mat1w& picture : pictures) {
+    cv::Mat1d change;
+    picture.convertTo(change, CV_64F);
+    change -= mean;
+    squares += change.mul(change);
+  }
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.total() / 2);
+  std::nth_element(squares.begin(), middle, squares.end());
+  return std::sqrt(*middle / static_cast<double>(pictures.size() - 1));
+}
+
 }  // namespace
 
 std::optional<ConstancyFigure> transfer_change(std::span<const ContrastMeasurement> measurements) {
@@ -165,6 +192,20 @@ std::optional<ConstancyFigure> noise_change(std::span<const PictureNoise> noise)
       });
 }
 
+std::optional<ConstancyFigure> presented_change(std::span<const PresentedContrast> presented) {
+  std::optional<ConstancyFigure> worst;
+  for (const PresentedContrast& one : presented) {
+    if (one.presentations == 0 || one.measured == 0) continue;
+    const double count = one.presentations, shared = one.shared / count;
+    const double error = one.errors / count * std::sqrt(shared + (1 - shared) / count);
+    const double relative = std::hypot(error, one.measured_error) / std::abs(one.measured);
+    const ConstancyFigure figure{one.sum / count / one.measured - 1,
+                                 std::hypot(constancy_errors * relative, most_presented_change)};
+    if (!worst || std::abs(figure.value) * worst->limit > std::abs(worst->value) * figure.limit) worst = figure;
+  }
+  return worst;
+}
+
 std::optional<ConstancyFigure> correlation_change(std::span<const PictureNoise> noise) {
   const auto variance = [](const PictureNoise& one) { return variance_of_ratio(one.frames) * per_sample(one); };
   return largest_change(noise,
@@ -176,22 +217,41 @@ std::optional<ConstancyFigure> correlation_change(std::span<const PictureNoise> 
                         });
 }
 
+std::optional<PictureResidue> judged_residue(const cv::Mat1d& before, std::span<const cv::Mat1w> pictures) {
+  const auto other_size = [&](const cv::Mat1w& picture) { return picture.size() != before.size(); };
+  if (before.empty() || pictures.size() < 8 || std::ranges::any_of(pictures, other_size)) return std::nullopt;
+  cv::Mat1d mean = cv::Mat1d::zeros(before.size());
+  for (const cv::Mat1w& picture : pictures) cv::add(mean, picture, mean, cv::noArray(), CV_64F);
+  mean /= static_cast<double>(pictures.size());
+  const double noise = median_deviation(pictures, mean);
+  const cv::Mat1d direction = direction_to(before, mean, noise);
+  const double squares = direction.dot(direction);
+  const double error = squares > 0 ? noise * std::sqrt(2 / squares) : INFINITY;
+  if (!(error < most_residue_error)) return std::nullopt;
+  // The direction has a mean of zero only before small changes are removed from it.
+  const cv::Mat1d level(before.size(), cv::mean(direction)[0]);
+  std::vector<double> shares;
+  for (const cv::Mat1w& picture : pictures)
+    shares.push_back(cv::Mat1d(direction - level).dot(cv::Mat1d(picture)) / squares);
+  const std::span<const double> late = std::span<const double>(shares).subspan(shares.size() / 2);
+  const double rest = arithmetic_mean(late);
+  double scatter = 0;
+  for (const double share : late) scatter += (share - rest) * (share - rest) / static_cast<double>(late.size() - 1);
+  return PictureResidue{shares.front() - rest,
+                        std::max(least_residue_share, residue_errors * std::hypot(error, std::sqrt(scatter))), true};
+}
+
 std::optional<PictureResidue> picture_residue(const cv::Mat1d& before, const cv::Mat1d& first, const cv::Mat1d& last,
                                               const cv::Mat1d& mean, double noise_k) {
   if (before.size() != mean.size()) return std::nullopt;
   // The change of a whole frame is an offset of the camera.
-  const cv::Mat1d old = before - mean, both = first - last;
+  const cv::Mat1d both = first - last;
   const cv::Mat1d change = both - cv::mean(both)[0];
-  cv::Mat1d direction = old - cv::mean(old)[0];
-  // Noise with memory is in both the previous picture and the first frame: over all unchanged pixels it would look like
-  // a residue.
-  constexpr double changed = 4;
-  direction.setTo(0, cv::abs(direction) < changed * noise_k);
+  const cv::Mat1d direction = direction_to(before, mean, noise_k);
   const double squares = direction.dot(direction);
   const double error = squares > 0 ? noise_k * std::sqrt(2 / squares) : INFINITY;
-  constexpr double errors = 5, most_error = 0.05;
-  if (!(error < most_error)) return std::nullopt;
-  return PictureResidue{direction.dot(change) / squares, std::max(least_residue_share, errors * error)};
+  if (!(error < most_residue_error)) return std::nullopt;
+  return PictureResidue{direction.dot(change) / squares, std::max(least_residue_share, residue_errors * error)};
 }
 
 }  // namespace todbench

@@ -26,8 +26,19 @@ struct PictureNoise {
 
 /// Residue of the previous picture in the first frame of an average.
 struct PictureResidue {
-  double share = 0;  ///< share of the difference between the previous picture and this one; 0: no residue
-  double limit = 0;  ///< above this limit the picture was still changing
+  double share = 0;            ///< share of the difference between the previous picture and this one; 0: no residue
+  double limit = 0;            ///< above this limit the picture was still changing
+  bool behind_stages = false;  ///< in the judged pictures, and not in the camera's frames
+};
+
+/// Contrast of the large triangles in the presentations of one set-up and contrast, and in the average in which the
+/// contrast was measured before them. Amplitudes of one fit (fit_place()), so that a blur that is not exact changes
+/// both alike.
+struct PresentedContrast {
+  double set_delta_t_k = 0;
+  double measured = 0, measured_error = 0;  ///< in the average, with its standard error
+  double sum = 0, errors = 0, shared = 0;  ///< sums over the presentations: amplitudes, their errors, PlateSeen::shared
+  int presentations = 0;
 };
 
 /// Further results of the averages of a run.
@@ -35,6 +46,7 @@ struct RunConstancy {
   std::vector<PictureNoise> noise;          ///< in the order of the run
   std::optional<PictureResidue> residue{};  ///< residue with the largest share relative to its limit; empty: no picture
                                             ///< differed enough
+  std::vector<PresentedContrast> presented{};  ///< settled contrasts in kelvin, in the order of the run
 };
 
 /// A figure and the limit beyond which it is a finding.
@@ -74,6 +86,14 @@ inline constexpr double transfer_false_alarm = 0.005;
 inline constexpr double most_noise_change = 0.1397619;  ///< ln 1.15; five errors of 16 frames of 120 lines: 7 %
 inline constexpr double constancy_errors = 5;
 
+/// Returns the relative difference between the contrast in the presentations and the measured contrast, of the set-up
+/// and contrast where it is largest relative to its limit. The limit is constancy_errors standard errors and
+/// most_presented_change in quadrature. The standard error has the errors of both amplitudes; fixed pattern recurs in
+/// all presentations. Empty if no contrast was presented.
+[[nodiscard]] std::optional<ConstancyFigure> presented_change(std::span<const PresentedContrast> presented);
+/// The amplitude of triangles of four pixels depends on their phases.
+inline constexpr double most_presented_change = 0.04;
+
 /// Returns the difference of the lag-1 correlation between the first and a later average at the same contrast. Of all
 /// contrasts and later averages it is the difference that is largest relative to its limit. The limit is
 /// constancy_errors standard errors, at least most_correlation_change.
@@ -91,6 +111,12 @@ inline constexpr double most_correlation_change = 0.2;  ///< five errors of 16 f
 [[nodiscard]] std::optional<PictureResidue> picture_residue(const cv::Mat1d& before, const cv::Mat1d& first,
                                                             const cv::Mat1d& last, const cv::Mat1d& mean,
                                                             double noise_k);
+/// Returns the same for the judged pictures of an average, which stages may scale from picture to picture. `before`:
+/// mean of the previous average. The share is that of the first picture minus the mean of the second half. Five
+/// standard deviations of the shares of the second half are part of the limit. The noise is the median over the pixels.
+/// Empty as above, and for fewer than eight pictures or pictures of different sizes.
+[[nodiscard]] std::optional<PictureResidue> judged_residue(const cv::Mat1d& before,
+                                                           std::span<const cv::Mat1w> pictures);
 /// Smallest limit of a residue. It exceeds the residue that rounding, or a fixed pattern that drifts between
 /// corrections, can cause.
 inline constexpr double least_residue_share = 0.02;

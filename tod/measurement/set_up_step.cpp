@@ -29,6 +29,17 @@ std::string plate_and_mounting(const TargetState& state) {
   return "plate " + state.plate + ", mounting " + std::string(to_string(state.mounting));
 }
 
+/// Returns the mean of pictures of one size; empty for none, and for different sizes.
+cv::Mat1d mean_of(std::span<const cv::Mat1w> pictures) {
+  if (pictures.empty()) return {};
+  cv::Mat1d mean = cv::Mat1d::zeros(pictures.front().size());
+  for (const cv::Mat1w& picture : pictures) {
+    if (picture.size() != mean.size()) return {};
+    cv::add(mean, picture, mean, cv::noArray(), CV_64F);
+  }
+  return mean / static_cast<double>(pictures.size());
+}
+
 }  // namespace
 
 std::string unexpected_sign(double set_k, const EffectiveContrast& observed, ContrastUnit unit,
@@ -97,20 +108,27 @@ Result<void> check_before_measuring(const MeasurementOptions& options, Observer&
 
 Result<AveragedPicture> SetUpStep::average(int count, std::stop_token stop, const FrameTaker::EachFrame& each) {
   cv::Mat1d first, last;
+  std::vector<cv::Mat1w> judged;
   auto picture = taker_.average(count, std::move(stop), [&](const Frame& frame, const cv::Mat1d& kelvin) {
     if (each) each(frame, kelvin);
+    if (!grey() && behind_stages(frame)) judged.push_back(as_judged(frame).counts.clone());
     if (first.empty()) first = kelvin;
     last = kelvin;
   });
   if (!picture) return picture;
   // Grey levels may have another gain in every frame; a contrast on its way differs between the frames.
   if (!grey() && wait_ == ContrastWait::settled && !before_.empty()) {
-    const auto residue = picture_residue(before_, first, last, picture->kelvin, noise_of_one_frame(*picture));
-    auto& worst = constancy_.residue;
-    if (residue && (!worst || residue->share * worst->limit > worst->share * residue->limit)) worst = residue;
+    keep_residue(picture_residue(before_, first, last, picture->kelvin, noise_of_one_frame(*picture)));
+    keep_residue(judged_residue(judged_before_, judged));
   }
   before_ = picture->kelvin;
+  judged_before_ = mean_of(judged);
   return picture;
+}
+
+void SetUpStep::keep_residue(const std::optional<PictureResidue>& residue) {
+  auto& worst = constancy_.residue;
+  if (residue && (!worst || residue->share * worst->limit > worst->share * residue->limit)) worst = residue;
 }
 
 Result<AveragedPicture> SetUpStep::look(std::stop_token stop) {
@@ -230,7 +248,12 @@ Result<SeenContrast> SetUpStep::contrast(const TargetPlate& mounted_plate, const
   if (!judged) return fail(plate_and_mounting(set), judged.error());
   if (*judged) note_saturation_behind(behind, mounted_plate, set, measured->value * (*judged)->gain);
   Result<SeenContrast> seen = grey() ? in_grey_levels(*picture, *measured, set, said) : in_kelvin(*measured, set);
-  if (seen) judge_by(*judged, set, *seen);
+  if (!seen) return seen;
+  judge_by(*judged, set, *seen);
+  if (grey() || set.wait != ContrastWait::settled) return seen;
+  const auto outlines = large_outlines(mounted_plate, registration, options_.registration.min_triangle_px);
+  if (!outlines.empty())
+    seen->large = fit_place(picture->kelvin, outlines, registration.blur_px, registration.pixel({0, 0}));
   return seen;
 }
 

@@ -19,6 +19,7 @@
 #include "tod/measurement/scan_watch.h"
 #include "tod/presentation/target.h"
 #include "tod/registration/registration.h"
+#include "tod/registration/shift_fit.h"
 
 namespace todbench {
 
@@ -45,6 +46,8 @@ struct SeenContrast {
   std::vector<ReferenceTriangle> references{};  ///< in kelvin; empty if the contrast is in grey levels
   std::optional<double> small_contrast_k{};     ///< as Presentation::small_delta_t_k
   std::optional<JudgedScale> judged{};          ///< empty: no stage after the camera
+  std::optional<PlaceFit> large{};  ///< fit of the large triangles in the average; empty: contrast not settled, or in
+                                    ///< grey levels
 };
 
 /// Returns the reason why a contrast was observed without the sign of its set-point. It is below one count of the
@@ -122,6 +125,8 @@ class SetUpStep {
   [[nodiscard]] SeenContrast in_grey_levels(const AveragedPicture& picture, const EffectiveContrast& measured,
                                             const TargetState& set, const PresentedTarget& said);
 
+  /// Keeps the residue that is largest relative to its limit.
+  void keep_residue(const std::optional<PictureResidue>& residue);
   /// Adjusts `seen` for the stages after the camera.
   void judge_by(const std::optional<JudgedScale>& judged, const TargetState& set, SeenContrast& seen);
 
@@ -138,7 +143,8 @@ class SetUpStep {
   std::vector<double> noted_contrasts_;  ///< contrasts after the stages
   std::optional<double> noise_counts_, lag1_correlation_;
   ContrastWait wait_ = ContrastWait::settled;
-  cv::Mat1d before_;  ///< mean of the last average; empty: none yet
+  cv::Mat1d before_;         ///< mean of the last average; empty: none yet
+  cv::Mat1d judged_before_;  ///< the same of the judged pictures; empty: no stage changed them
   RunConstancy constancy_;
   ScanWatch scan_;
 };

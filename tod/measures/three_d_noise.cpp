@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/try.h"
@@ -329,6 +330,22 @@ bool NoiseCube::few_pairs_stand_out() const {
   std::sort(sorted.begin(), sorted.end());
   const double limit = standing_out * sorted[sorted.size() / 2];
   return std::distance(std::upper_bound(sorted.begin(), sorted.end(), limit), sorted.end()) <= few;
+}
+
+bool NoiseCube::noise_changes() const {
+  if (frames_ < 8 || first_.rows < 2 || first_.cols < 2) return false;
+  const std::size_t half = steps_.size() / 2;
+  const auto mean = [](std::span<const double> steps) {
+    return std::accumulate(steps.begin(), steps.end(), 0.0) / static_cast<double>(steps.size());
+  };
+  const double before = mean(std::span(steps_).first(half)), after = mean(std::span(steps_).last(half));
+  if (!(before > 0 && after > 0)) return before != after;
+  constexpr double least_ratio = 1.15, by_chance = 1e-9;
+  // Differences that share a frame have a correlation of -1/2: the variance of their mean square is 3/2 times that of
+  // as many independent ones.
+  const double freedom = (first_.rows - 1.0) * (first_.cols - 1.0) * static_cast<double>(half) / 1.5;
+  const double ratio = std::max(before, after) / std::min(before, after);
+  return ratio > least_ratio && cdf(complement(distribution::FisherF(freedom, freedom), ratio)) < by_chance;
 }
 
 std::optional<double> NoiseCube::lag1_correlation() const {

@@ -90,7 +90,7 @@ cv::Mat1w in_counts(const cv::Mat1d& counts) {
 }
 
 struct Found {
-  bool transfer = false, noise = false, correlation = false, residue = false;
+  bool transfer = false, noise = false, correlation = false, residue = false, presented = false;
   bool operator==(const Found&) const = default;
 };
 
@@ -98,7 +98,8 @@ Found found_in(const MeasurementResult& run) {
   const auto beyond = [](const auto& figure) { return figure && figure->beyond(); };
   const auto& residue = run.constancy.residue;
   return {beyond(transfer_change(run.contrasts)), beyond(noise_change(run.constancy.noise)),
-          beyond(correlation_change(run.constancy.noise)), residue && residue->share > residue->limit};
+          beyond(correlation_change(run.constancy.noise)), residue && residue->share > residue->limit,
+          beyond(presented_change(run.constancy.presented))};
 }
 
 TEST(ChangingCamera, ThatDoesNotChangeHasNoFinding) {
@@ -123,6 +124,22 @@ TEST(ChangingCamera, OfAnotherGainIsFound) {
   ASSERT_TRUE(run) << run.error().message;
   EXPECT_TRUE(found_in(*run).transfer);
   EXPECT_NEAR(transfer_change(run->contrasts)->value, 0.1, 0.02);
+}
+
+TEST(ChangingCamera, OfAnotherGainInThePresentationsAloneIsFound) {
+  double middle = 0;
+  const auto run = run_of(1, [&](const cv::Mat1w& counts, std::uint64_t exposure) {
+    if (middle == 0) middle = cv::mean(counts)[0];
+    // The judged frames of a set-up.
+    if (exposure % 70 != 50 && exposure % 70 != 69) return counts;
+    cv::Mat1d other;
+    counts.convertTo(other, CV_64F);
+    return in_counts((other - middle) * 1.2 + middle);
+  });
+  ASSERT_TRUE(run) << run.error().message;
+  EXPECT_EQ(run->constancy.presented.size(), 8U);
+  EXPECT_EQ(found_in(*run), Found{.presented = true});
+  EXPECT_NEAR(presented_change(run->constancy.presented)->value, 0.2, 0.03);
 }
 
 Change more_noise() {

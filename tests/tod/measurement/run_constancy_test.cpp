@@ -331,5 +331,108 @@ TEST(PictureResidue, OfPicturesThatDoNotDifferIsNotKnown) {
   EXPECT_FALSE(residue_of({.share = 0, .noise_k = 0.07, .step_k = 0.01}, 1));
 }
 
+/// Judged pictures of an average: counts of a square of 1500 after another square of 1500.
+struct JudgedPictures {
+  double noise = 7;
+  int delay = 0;            ///< pictures that still show the previous scene
+  double memory = 0;        ///< share of the previous picture in each picture
+  double pulsation = 0;     ///< standard deviation of a gain of each picture
+  double noise_memory = 0;  ///< correlation of the noise of successive pictures
+  double step = 1500;
+};
+
+std::optional<PictureResidue> judged_residue_of(const JudgedPictures& change, std::uint64_t seed) {
+  constexpr int frames = 16, side = 32;
+  const RandomStream stream(seed, "judged residue");
+  std::uint64_t draw = 0;
+  cv::Mat1d scene(side, side, 5000.0), old(side, side, 5000.0), noise(side, side, 0.0), shown;
+  scene(cv::Rect(2, 2, 12, 12)) += change.step;
+  old(cv::Rect(18, 18, 12, 12)) += change.step;
+  cv::Mat1d before(side, side, 0.0);
+  std::vector<cv::Mat1w> pictures;
+  for (int k = -frames; k < frames; ++k) {
+    for (double& pixel : noise)
+      pixel = change.noise_memory * pixel +
+              std::sqrt(1 - change.noise_memory * change.noise_memory) * change.noise * stream.normal(draw++);
+    const double gain = 1 + change.pulsation * stream.normal(draw++);
+    const cv::Mat1d now = (k < change.delay ? old : scene);
+    shown = shown.empty() ? now.clone() : cv::Mat1d(change.memory * shown + (1 - change.memory) * now);
+    cv::Mat1w counts;
+    cv::Mat1d((shown - 5000) * gain + 5000 + noise).convertTo(counts, CV_16U);
+    if (k < 0)
+      before += cv::Mat1d(counts) / frames;
+    else
+      pictures.push_back(counts);
+  }
+  return judged_residue(before, pictures);
+}
+
+TEST(JudgedResidue, FindsADelayAndAMemoryOfTheStages) {
+  for (const JudgedPictures& late : {JudgedPictures{.delay = 1},
+                                     {.delay = 3},
+                                     {.memory = 0.5},
+                                     {.memory = 0.8},
+                                     {.memory = 0.95},
+                                     {.delay = 1, .pulsation = 0.1}}) {
+    const auto residue = judged_residue_of(late, 1);
+    ASSERT_TRUE(residue) << late.delay << " " << late.memory;
+    EXPECT_GT(residue->share, residue->limit) << late.delay << " " << late.memory;
+    EXPECT_TRUE(residue->behind_stages);
+  }
+  EXPECT_NEAR(judged_residue_of({.delay = 1}, 1)->share, 1, 0.01);
+}
+
+TEST(JudgedResidue, HasFewFalseAlarmsOfStagesWithoutMemory) {
+  for (const JudgedPictures& right :
+       {JudgedPictures{}, {.step = 60}, {.pulsation = 0.3}, {.noise_memory = 0.8}, {.noise_memory = 0.8, .step = 60}}) {
+    int found = 0;
+    for (std::uint64_t seed = 0; seed < 500; ++seed) {
+      const auto residue = judged_residue_of(right, seed);
+      found += residue && residue->share > residue->limit ? 1 : 0;
+    }
+    EXPECT_LE(found, 5) << right.step << " " << right.pulsation << " " << right.noise_memory;
+  }
+}
+
+std::vector<PresentedContrast> presented_of(double ratio, double error_of_one, double shared, std::uint64_t seed) {
+  const RandomStream stream(seed, "presented");
+  std::uint64_t draw = 0;
+  std::vector<PresentedContrast> out;
+  for (int set_up = 0; set_up < 8; ++set_up) {
+    for (const double set_k : {16.9, 0.5}) {
+      const double measured_error = error_of_one / 4;
+      PresentedContrast one{.set_delta_t_k = set_k,
+                            .measured = set_k + measured_error * stream.normal(draw++),
+                            .measured_error = measured_error};
+      const double pattern = std::sqrt(shared) * error_of_one * stream.normal(draw++);
+      for (int k = 0; k < 12; ++k) {
+        one.sum += ratio * set_k + pattern + std::sqrt(1 - shared) * error_of_one * stream.normal(draw++);
+        one.errors += error_of_one, one.shared += shared;
+        ++one.presentations;
+      }
+      out.push_back(one);
+    }
+  }
+  return out;
+}
+
+TEST(PresentedChange, FindsATenthMoreAndHasFewFalseAlarms) {
+  int found = 0, alarms = 0;
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    // At 0.5 K an amplitude has an error of 10 %, of which half recurs.
+    const auto right = presented_change(presented_of(1, 0.05, 0.5, seed)).value();
+    const auto wrong = presented_change(presented_of(1.1, 0.05, 0.5, seed)).value();
+    alarms += right.beyond() ? 1 : 0;
+    found += wrong.beyond() ? 1 : 0;
+  }
+  EXPECT_LE(alarms, 20);
+  EXPECT_EQ(found, 2000);
+}
+
+TEST(PresentedChange, OfNothingPresentedIsNotKnown) {
+  EXPECT_FALSE(presented_change({}));
+  EXPECT_FALSE(presented_change(std::vector<PresentedContrast>{{.set_delta_t_k = 1, .measured = 1}}));
+}
+
 }  // namespace
 }  // namespace todbench

@@ -193,6 +193,7 @@ TEST(NoiseCube, SeesThatThePatternChangedAndTakesNoNoiseForIt) {
 
     // A pattern of 1.5 standard deviations makes the difference of two frames 1 + 1.5^2 / 2 times its mean square.
     EXPECT_EQ(still.abrupt_change(), std::nullopt) << seed;
+    EXPECT_FALSE(still.noise_changes()) << seed;
     EXPECT_EQ(corrected.abrupt_change(), 9) << seed;
     EXPECT_TRUE(corrected.few_pairs_stand_out()) << seed;
   }
