@@ -151,7 +151,7 @@ void TailSamples::add(const std::vector<double>& columns, double value, int pixe
   }
 }
 
-TailFit TailSamples::fit_with(const TailBounds& bounds, double variance) const {
+BoundedLeastSquares TailSamples::problem_of(const TailBounds& bounds, double variance, double least_halo) const {
   const std::size_t n = unknowns_ + slacks;
   std::vector<double> gram(n * n), right(n);
   for (std::size_t i = 0; i < unknowns_; ++i) {
@@ -177,11 +177,17 @@ TailFit TailSamples::fit_with(const TailBounds& bounds, double variance) const {
   }
   std::vector<double> low(n, -HUGE_VAL), high(n, HUGE_VAL);
   low[step] = 0.2, high[step] = 5;
-  std::fill(low.begin() + slope, low.begin() + first_shading, 0.0);
+  low[slope] = 0;
+  std::fill(low.begin() + first_halo, low.begin() + first_shading, least_halo);
   std::fill(low.begin() + static_cast<std::ptrdiff_t>(unknowns_), low.end(), 0.0);
+  return {gram, right, low, high};
+}
+
+TailFit TailSamples::fit_with(const TailBounds& bounds, double variance) const {
+  const std::size_t n = unknowns_ + slacks;
   TailFit out;
   out.unknowns_ = unknowns_, out.bounds_ = bounds, out.noise_ = std::sqrt(variance);
-  out.problem_ = std::make_shared<BoundedLeastSquares>(gram, right, low, high);
+  out.problem_ = std::make_shared<BoundedLeastSquares>(problem_of(bounds, variance, 0));
   std::vector<double> weaker(n, 0.0);
   std::fill(weaker.begin() + first_halo, weaker.begin() + first_shading, -1.0);
   weaker[slope] = -1 / cauchy_slope;
@@ -222,7 +228,12 @@ std::optional<TailFit> TailSamples::fit(const TailBounds& bounds) const {
   if (side(false) < 10 || side(true) < 10) return std::nullopt;
   double variance = 1e-4;
   for (int pass = 0; pass < 2; ++pass) variance = variance_about(fit_with(bounds, variance).best());
-  return fit_with(bounds, variance);
+  TailFit out = fit_with(bounds, variance);
+  std::vector<double> direction(unknowns_ + slacks, 0.0);
+  for (std::size_t i = 0; i < halos; ++i) direction[first_halo + i] = wide(i, bounds) ? 0 : 1;
+  const HaloSum most = halo_sum(problem_of(bounds, variance, -1).farthest(direction, 25), bounds);
+  out.most_signed_halo_ = most.halos / most.contrast;
+  return out;
 }
 
 }  // namespace todbench

@@ -45,6 +45,9 @@ EdgeAxis axis_across(const cv::Mat1d& p) {
   return mean_of(x.mul(x)) >= mean_of(y.mul(y)) ? EdgeAxis::x : EdgeAxis::y;
 }
 
+/// Share of the step above which negative tails are not accepted; model errors of lenses stay below it.
+constexpr double least_undershoot = 0.005;
+
 /// A picture whose edge is nearly vertical with the bright side right; its unit is arbitrary.
 struct Upright {
   cv::Mat1d picture;
@@ -291,13 +294,14 @@ bool between_counts(const Found& found) {
 }
 
 /// Effect of rounding on the profile, as a share of the step, without spreading noise: half a count of each tail is cut
-/// off; a flat field that changes by a count adds that to the edge, and the same to the step. Noise removes the
-/// systematic part, by exp(-2 pi^2 sd^2) with the standard deviation in counts.
+/// off, and each level may be half a count from the true one: up to two counts, and up to 1.5 were seen. A flat field
+/// that changes by a count adds a third. Noise removes the systematic part, by exp(-2 pi^2 sd^2) with the standard
+/// deviation in counts.
 double rounding_of(const Found& found) {
   if (!(found.levels.count_step > 0)) return 0;
   const double sd = found.residual_sd / found.levels.count_step;
   const double variance = std::max(0.0, sd * sd - 1.0 / 12);
-  const double counts = between_counts(found) ? 3 : 1;
+  const double counts = between_counts(found) ? 3 : 2;
   return counts * found.levels.count_step / (found.levels.bright - found.levels.dark) *
          std::exp(-2 * std::numbers::pi * std::numbers::pi * variance);
 }
@@ -498,6 +502,12 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   for (int k = 0; k <= frequencies; ++k) edge.frequency_per_pitch.push_back(k / static_cast<double>(frequencies));
   const auto tails = options.plate ? plate_tails(in, *found, *options.plate) : own_tails(in, *found, seen, options);
   if (!tails) return fail(ErrorCode::invalid_input, "the edge has too few pixels beyond its profile");
+  if (tails->fit.most_signed_halo() < -least_undershoot) {
+    return fail(ErrorCode::not_identifiable,
+                fmt::format("the picture undershoots beside the edge by at least {:.1f} % of the step, as behind an AC "
+                            "coupling or a sharpening over many pixels: the MTF at low frequencies is not known",
+                            -100 * tails->fit.most_signed_halo()));
+  }
   // Shading is an unknown of the tails: use the original picture.
   const std::vector<EdgeSample> samples = samples_near(seen, found->line, found->reach);
   TODBENCH_TRY(const auto displacement, line_displacement(*found));
