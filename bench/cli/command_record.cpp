@@ -162,6 +162,8 @@ void finish(Sink& sink, const std::filesystem::path& file, Recorded& recorded) {
   if (!kept || *kept > 0 || sink.may_be_empty()) return;
   std::error_code problem;
   std::filesystem::remove(file, problem);
+  const bool disk_failed = recorded.ended_by && recorded.ended_by->code == ErrorCode::io;
+  if (disk_failed) return;
   const bool has_a_reason = recorded.arrived == 0 && recorded.ended_by;
   if (has_a_reason && recorded.ended_by->code != ErrorCode::interrupted) return;
   recorded.ended_by =

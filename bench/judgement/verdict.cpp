@@ -31,6 +31,15 @@ Decided decided(const Verdict& verdict, const TodCurve& curve) {
   return {VerdictKind::pass, "every demand is met"};
 }
 
+/// Withdraws the decision about a demand.
+void withhold(Demand& demand) {
+  demand.decision = VerdictKind::inconclusive;
+  if (demand.conformity) demand.conformity = ConformityDecision::inconclusive;
+  demand.p_conformity.reset();
+  demand.reason =
+      "not decided, because the frames contradict the plan or the target; without this contradiction: " + demand.reason;
+}
+
 /// Returns "; the intervals do not include the uncertainty of distance, form", or an empty text.
 std::string without(const Verdict& verdict) {
   if (!verdict.not_stated || verdict.not_stated->empty()) return {};
@@ -138,6 +147,9 @@ Verdict judge(const JudgementInput& evidence) {
                   .judged = evidence.judged};
   for (const DemandKindRow& row : demand_kinds()) {
     for (Demand& demand : row.judge(row, evidence)) verdict.demands.push_back(std::move(demand));
+  }
+  for (Demand& demand : verdict.demands) {
+    if (evidence.bench_contradicts) withhold(demand);
   }
   add_fleet_risks(verdict.demands, limits);
   if (evidence.uncertainty != nullptr) verdict.not_stated = evidence.uncertainty->not_stated;

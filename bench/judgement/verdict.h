@@ -132,6 +132,7 @@ struct JudgementInput {
   const TodCurve& curve;  ///< curve; has no points if the run ended before the first point
   const std::optional<Comparison>& comparison;
   std::optional<std::string> ended_early{};
+  bool bench_contradicts = false;  ///< the run ended because the frames contradict plan or target: no demand is decided
   JudgedWhen judged = JudgedWhen::at_end_of_run;
   const CurveUncertainty* uncertainty = nullptr;  ///< uncertainty of the curve; null: the plan has no budget
   /// Transmittance of the bench, if camera and target both state the contrast in kelvin. Then, without a budget, a

@@ -152,6 +152,7 @@ ExperimentOutcome concluded(ExperimentOutcome outcome, const Plan& plan, const O
        .curve = outcome.curve,
        .comparison = outcome.comparison,
        .ended_early = outcome.ended_by ? std::optional(outcome.ended_by->message) : std::nullopt,
+       .bench_contradicts = outcome.ended_by && outcome.ended_by->code == ErrorCode::calibration,
        .uncertainty = outcome.uncertainty ? &*outcome.uncertainty : nullptr,
        .air_transmittance = provenance.camera ? contrast_transmittance(plan, outcome.presentations) : std::nullopt,
        .measures = outcome.measures ? std::optional(quantities_of(measure_lines(*outcome.measures))) : std::nullopt});

@@ -288,6 +288,23 @@ TEST(Judge, ARunThatEndedEarlyIsJudgedByWhatThereIsAndCannotPass) {
   EXPECT_EQ(bad.ended_early, "the camera was lost");
 }
 
+TEST(Judge, DecidesNoDemandOfARunWhoseFramesContradictThePlan) {
+  for (const double s75_mrad : {1.5, 3.0}) {
+    const TodCurve curve{"o", "s", {point_with(FitVerdict::ok, s75_mrad, 1.05 * s75_mrad)}};
+
+    const Verdict verdict = judge({.limits = one_limit(),
+                                   .curve = curve,
+                                   .comparison = std::nullopt,
+                                   .ended_early = "the plate is not at the requested place",
+                                   .bench_contradicts = true});
+
+    EXPECT_EQ(verdict.demands.at(0).decision, VerdictKind::inconclusive);
+    EXPECT_FALSE(verdict.demands.at(0).p_conformity);
+    EXPECT_EQ(verdict.decision, VerdictKind::inconclusive);
+    EXPECT_EQ(verdict.reason, "the run ended early: the plate is not at the requested place");
+  }
+}
+
 TEST(Judge, ARunThatEndedBeforeAnythingWasMeasuredLeavesEveryLimitOpen) {
   const Verdict verdict = judge({.limits = {{{16.9, limit_per_mrad}}, 10.0},
                                  .curve = {},
