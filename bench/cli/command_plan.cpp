@@ -157,7 +157,7 @@ Result<RunForecast> run_forecast(const PlanArguments& asked, const Plan& plan, c
   }
   if (std::string advice = ramp_advice(plan, inputs); !advice.empty())
     out.prediction.warnings.push_back(std::move(advice));
-  auto frontier = precision_frontier(plan, inputs, stop);
+  auto frontier = precision_frontier(plan, inputs, stop, out.prediction.figures);
   if (!frontier && frontier.error().code == ErrorCode::interrupted) return tl::unexpected(frontier.error());
   if (frontier) out.frontier = *std::move(frontier);
   TODBENCH_TRY(const auto of_camera, predict_plan(as_measured(plan), inputs));

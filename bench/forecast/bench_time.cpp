@@ -8,6 +8,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <set>
 #include <string_view>
 
 #include "bench/forecast/visit_order.h"
@@ -129,6 +130,8 @@ class Walk {
     const bool contrast = before == nullptr || before->delta_t_k != state.delta_t_k;
     const bool shift = before == nullptr || before->shift_mm != state.shift_mm;
     ++time_.presentations;
+    set_ups_.emplace(state.plate, state.mounting);
+    time_.set_ups = set_ups_.size();
     time_.plate_changes += plate ? 1 : 0;
     time_.mounting_changes += mounting ? 1 : 0;
     time_.contrast_changes += contrast ? 1 : 0;
@@ -272,6 +275,7 @@ class Walk {
 
   const Plan& plan_;
   BenchTime time_;
+  std::set<std::pair<std::string, Mounting>> set_ups_;
 };
 
 }  // namespace

@@ -11,7 +11,6 @@
 #include "acquisition/base/try.h"
 #include "bench/forecast/bench_time.h"
 #include "bench/forecast/decision_forecast.h"
-#include "bench/forecast/precision_frontier.h"
 #include "bench/plan/plan_options.h"
 #include "bench/report/number_format.h"
 #include "bench/text/text.h"
@@ -23,8 +22,8 @@ void add_rows(AccuracyBill& bill, const Plan& plan, const BenchTime& time, doubl
               const std::vector<ContrastPrediction>& contrasts) {
   const auto seconds = [&](std::uint64_t frames) { return static_cast<double>(frames) / frame_rate_hz; };
   bill.rows.push_back({std::string(changes_part), time.changes_s - time.all_measures.changes_s - time.warm_up_s,
-                       fmt::format("{} set-ups, {} contrasts, {} places of the plate in the picture",
-                                   set_ups_of(plan.target), contrasts.size(), time.presentations)});
+                       fmt::format("{} set-ups, {} contrasts, {} places of the plate in the picture", time.set_ups,
+                                   contrasts.size(), time.presentations)});
   bill.rows.push_back(
       {std::string(location_part), seconds(time.looking_frames), "place of the plate and effective contrasts"});
   for (const ContrastPrediction& contrast : contrasts) {
@@ -100,7 +99,7 @@ void add_least(AccuracyBill& bill, const Plan& plan, const BenchTime& time, cons
     bill.sentences.emplace_back(no_limit_sentence);
     return;
   }
-  const auto set_ups = static_cast<double>(set_ups_of(plan.target));
+  const auto set_ups = static_cast<double>(time.set_ups);
   const double each = static_cast<double>(time.presentations) / static_cast<double>(prediction.contrasts.size());
   const double least = std::min(1.0, std::max<double>(set_ups, least_graded_presentations) / std::max(1.0, each));
   const double shifts_s = std::max(0.0, each - set_ups) * plan.target.shift_change_s;  // of a contrast
@@ -143,8 +142,7 @@ Result<AccuracyBill> bill_forecast(const Plan& asked, const ExperimentInputs& in
   const Plan plan = as_measured(with_frames(asked, inputs));
   TODBENCH_TRY(const auto prediction, predict_plan(plan, inputs));
   const double frame_rate_hz = inputs.sensor.frame_rate_hz;
-  const auto presentations = expected_presentations(plan, inputs.plates, prediction.contrasts);
-  const BenchTime time = bench_time(plan, inputs.plates, frame_rate_hz, presentations);
+  const BenchTime time = expected_bench_time(plan, inputs, prediction.contrasts);
   bill.total_s = time.total_s() - time.warm_up_s;
   if (frame_rate_hz > 0) add_rows(bill, plan, time, frame_rate_hz, prediction.contrasts);
   TODBENCH_TRY(const auto floors, floors_ln(plan, prediction));

@@ -32,9 +32,40 @@ Result<double> computing_s(const Plan& plan, const ExperimentInputs& inputs, std
 }
 
 double bench_s(const Plan& plan, const ExperimentInputs& inputs, const std::vector<ContrastPrediction>& contrasts) {
-  if (plan.camera.id.empty()) return 0;
-  const auto presentations = expected_presentations(plan, inputs.plates, contrasts);
-  return bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, presentations).total_s();
+  return plan.camera.id.empty() ? 0 : expected_bench_time(plan, inputs, contrasts).total_s();
+}
+
+double mean_of(const std::vector<int>& frames) {
+  return std::accumulate(frames.begin(), frames.end(), 0.0) / static_cast<double>(frames.size());
+}
+
+/// Computing times of the choices.
+struct ComputingTimes {
+  double binary_s = 0, graded_s = 0;  ///< graded: with `frames` frames
+  double frames = 1, frame_s = 0;
+  [[nodiscard]] double graded(double count) const { return std::max(0.0, graded_s + (count - frames) * frame_s); }
+};
+
+/// Computing times of the choices of a plan. `own`: frames of the plan. `own_s`: its computing time, which its choice
+/// keeps.
+Result<ComputingTimes> computing_times(const Plan& plan, const ExperimentInputs& inputs, const std::vector<int>& own,
+                                       double own_s, const std::stop_token& stop) {
+  ComputingTimes times{.binary_s = own_s, .graded_s = own_s};
+  const auto timed = [&](AnswerKind answers, int frames) {
+    return computing_s(with_answers(plan, answers, {frames}), inputs, stop);
+  };
+  if (chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded) {
+    times.frames = mean_of(own);
+    if (plan.schedule.kind == ScheduleKind::ramp) return times;
+    TODBENCH_TRY(times.binary_s, timed(AnswerKind::binary, 1));
+  } else {
+    TODBENCH_TRY(times.graded_s, timed(AnswerKind::graded, 1));
+  }
+  // Far from the first number, so that the load of the computer changes the time of a frame little.
+  const int second = times.frames < 4 ? 8 : 1;
+  TODBENCH_TRY(const double second_s, timed(AnswerKind::graded, second));
+  times.frame_s = std::max(0.0, (second_s - times.graded_s) / (second - times.frames));
+  return times;
 }
 
 /// Largest half-width over the contrasts with the rows of the budget (`floors`, in ln acuity), which frames do not
@@ -72,13 +103,8 @@ void recommend(std::vector<PrecisionChoice>& choices, const std::vector<double>&
 
 }  // namespace
 
-Plan as_measured(Plan plan) {
-  if (!plan.camera.id.empty()) plan.simulation.phases = plan.target.phases;
-  return plan;
-}
-
 Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
-                                                        std::stop_token stop) {
+                                                        std::stop_token stop, PlanFigures figures) {
   // Other frames would change the rate of a ramp, which has no binary answers.
   const bool ramp = plan.schedule.kind == ScheduleKind::ramp;
   const AnswersTaken planned = chosen_answers(plan, inputs.sensor);
@@ -91,31 +117,34 @@ Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const 
     frames.push_back(own);
     std::ranges::sort(frames);
   }
-  TODBENCH_TRY(const auto binary_s, computing_s(with_answers(plan, AnswerKind::binary, {1}), inputs, stop));
-  TODBENCH_TRY(const auto one_s, computing_s(with_answers(plan, AnswerKind::graded, {1}), inputs, stop));
-  TODBENCH_TRY(const auto two_s, computing_s(with_answers(plan, AnswerKind::graded, {2}), inputs, stop));
-  const double frame_s = std::max(0.0, two_s - one_s);
+  if (!figures.predicted_s) {
+    PlanPrediction timed;
+    TODBENCH_TRY_VOID(predict_times(plan, inputs, timed, stop));
+    figures = timed.figures;
+  }
+  TODBENCH_TRY(const auto expected, predict_plan(as_measured(plan), inputs));
+  const double own_s = figures.predicted_measurement_s.value_or(*figures.predicted_s);
+  const double own_bench_s = bench_s(with_frames(plan, inputs), inputs, expected.contrasts);
+  TODBENCH_TRY(const auto times, computing_times(plan, inputs, own, own_s - own_bench_s, stop));
 
   std::vector<PrecisionChoice> choices;
   const auto add = [&](AnswerKind answers, const std::vector<int>& count, double computing) -> Result<void> {
     const Plan other = with_answers(plan, answers, count);
     TODBENCH_TRY(auto prediction, predict_plan(as_measured(other), inputs));
     PrecisionChoice choice{.answers = answers, .frames = count};
-    choice.bench_s = bench_s(other, inputs, prediction.contrasts);
-    choice.seconds = computing + choice.bench_s;
+    choice.planned = ramp || (planned.kind == answers && (answers == AnswerKind::binary || own == count));
+    choice.bench_s = choice.planned ? own_bench_s : bench_s(other, inputs, prediction.contrasts);
+    choice.seconds = choice.planned ? own_s : computing + choice.bench_s;
     choice.half_width_percent = prediction.figures.predicted_uncertainty_percent;
     choice.contrasts = std::move(prediction.contrasts);
-    choice.planned = ramp || (planned.kind == answers && (answers == AnswerKind::binary || own == count));
     choices.push_back(std::move(choice));
     return {};
   };
   if (!ramp) {
-    if (auto added = add(AnswerKind::binary, {1}, binary_s); !added) return tl::unexpected(added.error());
+    TODBENCH_TRY_VOID(add(AnswerKind::binary, {1}, times.binary_s));
   }
-  for (const std::vector<int>& count : frames) {
-    const double mean = std::accumulate(count.begin(), count.end(), 0.0) / static_cast<double>(count.size());
-    TODBENCH_TRY_VOID(add(AnswerKind::graded, count, one_s + (mean - 1) * frame_s));
-  }
+  for (const std::vector<int>& count : frames)
+    TODBENCH_TRY_VOID(add(AnswerKind::graded, count, times.graded(mean_of(count))));
   const auto floors = floors_ln(plan, {.figures = {}, .contrasts = choices.front().contrasts, .warnings = {}});
   if (!floors) return tl::unexpected(floors.error());
   recommend(choices, *floors);

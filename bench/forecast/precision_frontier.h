@@ -26,16 +26,14 @@ struct PrecisionChoice {
   bool recommended = false;
 };
 
-/// Returns the plan with the camera's number of phases also for the simulation, if the plan has a camera.
-/// predict_plan() then predicts the curve of the camera.
-[[nodiscard]] Plan as_measured(Plan plan);
-
 /// Returns the choices for the camera's curve, if there is one: binary answers, graded answers with 1, 2, 4 and 8
-/// frames, and the plan's own numbers (with_frames()) if they differ. Half-widths come from predict_plan(), times from
-/// predict_times() (1 and 2 frames are timed, the others follow). For a ramp, returns only the plan's own choice,
-/// because other numbers of frames would change its rate. Errors: those of predict_plan() and predict_times().
+/// frames, and the plan's own numbers (with_frames()) if they differ. Half-widths come from predict_plan(). The time of
+/// the plan's own choice is that of predict_times(): the one in `figures`, or a new one if `figures` has none. For
+/// graded answers a second number of frames is timed, and the times of the others follow. For a ramp, returns only the
+/// plan's own choice, because other numbers of frames would change its rate. Errors: those of predict_plan() and
+/// predict_times().
 [[nodiscard]] Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
-                                                                      std::stop_token stop);
+                                                                      std::stop_token stop, PlanFigures figures = {});
 
 /// Returns the value of the key "frontier" of `plan --json` and `cost --json`.
 [[nodiscard]] Json frontier_json(const std::vector<PrecisionChoice>& choices);

@@ -408,6 +408,11 @@ std::string beyond_range(const SensorSpec& sensor, double delta_t_k) {
 
 }  // namespace
 
+Plan as_measured(Plan plan) {
+  if (!plan.camera.id.empty()) plan.simulation.phases = plan.target.phases;
+  return plan;
+}
+
 Plan with_frames(Plan plan, const ExperimentInputs& inputs) {
   std::vector<int>& frames = plan.schedule.frames_per_presentation;
   if (!frames.empty() && std::ranges::find(frames, 0) == frames.end()) return plan;
@@ -451,6 +456,12 @@ std::vector<double> expected_presentations(const Plan& plan, const std::vector<T
   for (const auto& contrast : contrasts)
     out.push_back(contrast.trials * static_cast<double>(plates.size()) / triangles);
   return out;
+}
+
+BenchTime expected_bench_time(const Plan& plan, const ExperimentInputs& inputs,
+                              const std::vector<ContrastPrediction>& contrasts) {
+  return bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz,
+                    expected_presentations(plan, inputs.plates, contrasts));
 }
 
 Result<PlanPrediction> predict_plan(const Plan& asked, const ExperimentInputs& inputs) {
@@ -497,8 +508,8 @@ Result<void> predict_times(const Plan& asked, const ExperimentInputs& inputs, Pl
   TODBENCH_TRY(const auto time, predict_time(plan, inputs, std::move(stop)));
   prediction.figures.predicted_s = time.simulation_s;
   if (plan.camera.id.empty()) return {};
-  const auto presentations = expected_presentations(plan, inputs.plates, prediction.contrasts);
-  const BenchTime bench = bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, presentations);
+  TODBENCH_TRY(const auto of_camera, predict_plan(as_measured(plan), inputs));
+  const BenchTime bench = expected_bench_time(plan, inputs, of_camera.contrasts);
   prediction.figures.predicted_measurement_s = time.measuring_s + bench.total_s();
   return {};
 }

@@ -38,6 +38,8 @@ struct ContrastPrediction {
   std::optional<double> paired_se_ln_ratio{};
 };
 
+struct BenchTime;
+
 struct PlanPrediction {
   PlanFigures figures;  ///< uncertainty: the largest over the contrasts; without times
   std::vector<ContrastPrediction> contrasts;
@@ -56,8 +58,13 @@ struct PlanPrediction {
 /// uncertainty either; a warning names the contrast.
 [[nodiscard]] Result<PlanPrediction> predict_plan(const Plan& plan, const ExperimentInputs& inputs);
 
-/// Adds the times to a prediction of the same plan: predict_time() (bench/forecast/time_prediction.h) and bench_time()
-/// (bench/forecast/bench_time.h). If the times cannot be predicted, they stay empty.
+/// Returns the plan with the camera's number of phases also for the simulation, if the plan has a camera.
+/// predict_plan() then predicts the curve of the camera.
+[[nodiscard]] Plan as_measured(Plan plan);
+
+/// Adds the times to a prediction of the same plan: predict_time() (bench/forecast/time_prediction.h) and
+/// expected_bench_time() for the curve of the camera. If the times cannot be predicted, they stay empty. Errors: those
+/// of predict_time() and predict_plan().
 [[nodiscard]] Result<void> predict_times(const Plan& plan, const ExperimentInputs& inputs, PlanPrediction& prediction,
                                          std::stop_token stop);
 
@@ -68,5 +75,10 @@ struct PlanPrediction {
 /// schedule that lists its presentations.
 [[nodiscard]] std::vector<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                          const std::vector<ContrastPrediction>& contrasts);
+
+/// Returns the bench time (bench/forecast/bench_time.h) of a plan with the presentations that these contrasts of the
+/// camera are expected to need.
+[[nodiscard]] BenchTime expected_bench_time(const Plan& plan, const ExperimentInputs& inputs,
+                                            const std::vector<ContrastPrediction>& contrasts);
 
 }  // namespace todbench

@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
 
+#include "bench/forecast/bill_forecast.h"
 #include "bench/forecast/precision_frontier.h"
 #include "bench/twin/twin_shapes.h"
 
@@ -183,6 +185,28 @@ TEST(PrecisionFrontier, HasTheNumbersOfEachContrast) {
   EXPECT_EQ(frontier_json(choices)[3]["frames_per_presentation"], Json({2, 2, 16}));
   EXPECT_EQ(choices[3].contrasts[0].uncertainty_percent, choices[2].contrasts[0].uncertainty_percent);
   EXPECT_LT(choices[3].contrasts[2].uncertainty_percent, choices[5].contrasts[2].uncertainty_percent);
+}
+
+TEST(PrecisionFrontier, HasTheTimeOfThePlanItself) {
+  for (const ScheduleKind kind : {ScheduleKind::constant, ScheduleKind::adaptive}) {
+    Plan plan = *load_plan("demo");
+    plan.target.phases = 4;
+    plan.simulation.phases = 8;
+    plan.simulation.accuracy = "draft";
+    plan.schedule.kind = kind;
+    plan.schedule.half_width_percent = 4;
+    EffectPlanner planner;
+    const auto inputs = experiment_inputs(LoadedPlan::load(plan).value(), planner).value();
+    PlanPrediction prediction = predict_plan(plan, inputs).value();
+    ASSERT_TRUE(predict_times(plan, inputs, prediction, {}));
+
+    const auto choices = precision_frontier(plan, inputs, {}, prediction.figures).value();
+
+    const auto planned = std::ranges::find_if(choices, &PrecisionChoice::planned);
+    ASSERT_NE(planned, choices.end());
+    EXPECT_EQ(planned->seconds, *prediction.figures.predicted_measurement_s);
+    EXPECT_EQ(planned->bench_s, bill_forecast(plan, inputs).value().total_s);
+  }
 }
 
 TEST(PrecisionFrontier, HasEveryChoiceAndRecommendsOne) {
