@@ -34,6 +34,12 @@ std::string laboratory_text(TargetKind target) {
              : "";
 }
 
+bool varies_contrast_frames(const DecisionForecast& forecast) {
+  return std::ranges::any_of(forecast.designs, [&](const DecisionDesign& design) {
+    return design.contrast_frames != forecast.designs.front().contrast_frames;
+  });
+}
+
 void print_designs(const Console& console, const DecisionForecast& forecast) {
   const bool ramp = std::ranges::any_of(forecast.designs, [](const auto& one) { return one.ramp_k_per_s.has_value(); });
   const bool adaptive =
@@ -43,6 +49,8 @@ void print_designs(const Console& console, const DecisionForecast& forecast) {
                   : adaptive ? "half-width asked [%]"
                              : "phases",
                   "bench time [s]", "expected trials [%]", "with budget [%]"};
+  const bool contrast_frames = varies_contrast_frames(forecast);
+  if (contrast_frames) header.insert(header.begin() + 2, "frames of the contrast");
   for (const int over : shown_cameras) header.push_back(fmt::format("{:+d} %", over));
   const bool fleet =
       std::ranges::any_of(forecast.designs, [](const auto& design) { return design.consumer_risk.has_value(); });
@@ -55,6 +63,7 @@ void print_designs(const Console& console, const DecisionForecast& forecast) {
                  : design.asked_percent ? fmt::format("{:g}", *design.asked_percent)
                                         : std::to_string(design.phases),
                  fixed(design.bench_s, 0), fixed(design.half_width_percent, 2), fixed(design.deciding_percent, 2)};
+    if (contrast_frames) row.insert(row.begin() + 2, std::to_string(design.contrast_frames));
     for (const int over : shown_cameras) {
       const DecisionChances* chances = chances_at(design, over);
       row.push_back(chances != nullptr ? percent_text(1 - chances->inconclusive) : "");
@@ -174,7 +183,10 @@ Json decisions_json(const std::vector<DecisionForecast>& forecasts) {
     Json rows = Json::array(), designs = Json::array();
     for (const FloorRow& row : forecast.rows)
       rows.push_back({{"name", row.name}, {"half_width_percent", json_number(row.half_width_percent)}});
-    for (const DecisionDesign& design : forecast.designs) designs.push_back(design_json(design));
+    for (const DecisionDesign& design : forecast.designs) {
+      designs.push_back(design_json(design));
+      if (varies_contrast_frames(forecast)) designs.back()["contrast_frames"] = design.contrast_frames;
+    }
     json.push_back({{"delta_t_k", json_number(forecast.delta_t_k)},
                     {"least_acuity_per_mrad", json_number(forecast.least_acuity_per_mrad)},
                     {"expected_over_limit_percent", json_number(forecast.expected_over_limit_percent)},

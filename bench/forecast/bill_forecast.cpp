@@ -10,6 +10,7 @@
 
 #include "acquisition/base/try.h"
 #include "bench/forecast/bench_time.h"
+#include "bench/forecast/contrast_forecast.h"
 #include "bench/forecast/decision_forecast.h"
 #include "bench/plan/plan_options.h"
 #include "bench/report/number_format.h"
@@ -56,9 +57,9 @@ struct DecisionNeed {
 };
 
 /// Returns what decides the limit for a camera of the predicted acuity; empty, with a sentence, if no presentation
-/// does. `floor_ln`: half-width of the stated rows.
+/// does. `floor_ln`: half-width of the stated rows. `contrast_frames`: deciding_contrast_frames().
 std::optional<DecisionNeed> needed_for(AccuracyBill& bill, const AcuityLimit& limit, const ContrastPrediction& contrast,
-                                       double floor_ln) {
+                                       double floor_ln, const std::optional<int>& contrast_frames) {
   const std::string at = number_text(contrast.delta_t_k) + " K";
   if (!contrast.s75_mrad || !contrast.uncertainty_percent) {
     bill.sentences.push_back("No least time for the decision at " + at + ": no interval of S75 is predicted.");
@@ -70,12 +71,16 @@ std::optional<DecisionNeed> needed_for(AccuracyBill& bill, const AcuityLimit& li
   const double trials = std::sqrt(std::max(0.0, all * all - std::pow(contrast.contrast_half_width, 2)));
   const auto share = share_for_decision(trials, margin, fixed);
   if (share) return DecisionNeed{*share, std::sqrt(margin * margin - fixed * fixed)};
-  bill.sentences.push_back(
-      fmt::format("No number of presentations decides the predicted acuity at {}: it is {} % from its limit; the "
-                  "stated rows of the "
-                  "budget make ± {} %, and the measured contrast ± {} %.",
-                  at, significant(100 * std::expm1(margin), 2), significant(100 * std::expm1(floor_ln), 2),
-                  significant(100 * std::expm1(contrast.contrast_half_width), 2)));
+  bill.sentences.push_back(fmt::format(
+      "No number of presentations decides the predicted acuity at {}: it is {} % from its limit; the stated rows of "
+      "the "
+      "budget make ± {} %, and the measured contrast ± {} %.{}",
+      at, significant(100 * std::expm1(margin), 2), significant(100 * std::expm1(floor_ln), 2),
+      significant(100 * std::expm1(contrast.contrast_half_width), 2),
+      contrast_frames ? fmt::format(" Presentations decide it with {} frames of the contrast ([measurement] "
+                                    "contrast_frames).",
+                                    *contrast_frames)
+                      : ""));
   return std::nullopt;
 }
 
@@ -93,11 +98,11 @@ std::string need_in_words(const Plan& plan, const DecisionNeed& need, double del
 }
 
 /// Adds what the plan's limits on acuity need. `floors_ln`: half-widths of the stated rows, one for each contrast.
-void add_least(AccuracyBill& bill, const Plan& plan, const BenchTime& time, const PlanPrediction& prediction,
-               const std::vector<double>& floors_ln) {
+Result<void> add_least(AccuracyBill& bill, const Plan& plan, const ExperimentInputs& inputs, const BenchTime& time,
+                       const PlanPrediction& prediction, const std::vector<double>& floors_ln) {
   if (plan.limits.acuity.empty()) {
     bill.sentences.emplace_back(no_limit_sentence);
-    return;
+    return {};
   }
   const auto set_ups = static_cast<double>(time.set_ups);
   const double each = static_cast<double>(time.presentations) / static_cast<double>(prediction.contrasts.size());
@@ -107,14 +112,17 @@ void add_least(AccuracyBill& bill, const Plan& plan, const BenchTime& time, cons
     const auto row = std::ranges::find(bill.rows, part, &BillRow::part);
     return row == bill.rows.end() ? 0 : row->seconds.value_or(0);
   };
-  bool decided = false;
+  bool decided = false, by_contrast_frames = false;
   double needed_s = seconds_of(changes_part) + seconds_of(location_part), all_s = needed_s;
   for (std::size_t i = 0; i < prediction.contrasts.size(); ++i) {
     const ContrastPrediction& contrast = prediction.contrasts[i];
     double most = 0;
     for (const AcuityLimit& limit : plan.limits.acuity) {
       if (!same_contrast(limit.delta_t_k, contrast.delta_t_k)) continue;
-      auto need = needed_for(bill, limit, contrast, floors_ln[i]);
+      TODBENCH_TRY(const auto contrast_frames,
+                   deciding_contrast_frames(plan, inputs, contrast, limit.least_acuity_per_mrad, floors_ln[i]));
+      by_contrast_frames = by_contrast_frames || contrast_frames;
+      auto need = needed_for(bill, limit, contrast, floors_ln[i], contrast_frames);
       if (!need) continue;
       need->share = std::max(need->share, least);
       decided = true;
@@ -125,13 +133,14 @@ void add_least(AccuracyBill& bill, const Plan& plan, const BenchTime& time, cons
     needed_s += most * contrast_s + (most - 1) * shifts_s;
     all_s += contrast_s;
   }
-  if (!decided) return;
-  if (plan.schedule.kind == ScheduleKind::constant)
+  if (decided && plan.schedule.kind == ScheduleKind::constant)
     bill.sentences.push_back(fmt::format(
         "In the set-ups of the plan, the decisions on acuity alone need about {} s; {} s are planned for changes, "
         "location and presentations.",
         significant(needed_s, 2), significant(all_s, 2)));
-  bill.sentences.emplace_back("`todbench plan --optimise --decide` looks for the fastest design that decides.");
+  if (decided || by_contrast_frames)
+    bill.sentences.emplace_back("`todbench plan --optimise --decide` looks for the fastest design that decides.");
+  return {};
 }
 
 }  // namespace
@@ -154,7 +163,7 @@ Result<AccuracyBill> bill_forecast(const Plan& asked, const ExperimentInputs& in
         fmt::format("At {} K the stated rows of the budget make ± {:.2g} %, which no presentation reduces.",
                     number_text(prediction.contrasts[i].delta_t_k), 100 * std::expm1(floors[i])));
   }
-  add_least(bill, plan, time, prediction, floors);
+  TODBENCH_TRY_VOID(add_least(bill, plan, inputs, time, prediction, floors));
   for (std::string& sentence : left_out_sentences(inputs.effects)) bill.sentences.push_back(std::move(sentence));
   return bill;
 }

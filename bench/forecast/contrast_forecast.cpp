@@ -10,6 +10,7 @@
 
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/rng.h"
+#include "acquisition/base/try.h"
 #include "bench/forecast/graded_precision.h"
 #include "bench/forecast/limit_forecast.h"
 #include "bench/plan/plan_options.h"
@@ -168,6 +169,28 @@ double contrast_half_width(const Plan& plan, const ExperimentInputs& inputs, dou
   const auto set_ups = static_cast<int>(std::lround(scatter.of_set_ups)) + 1;
   const auto triangles = static_cast<int>(std::lround((scatter.of_places + 1) / set_ups));
   return stopping_half_width(set_ups, triangles) * slope * scatter.standard_error_k / std::abs(delta_t_k);
+}
+
+Result<std::optional<int>> enough_contrast_frames(Plan plan, const ExperimentInputs& inputs,
+                                                  const std::function<bool(const ContrastPrediction&)>& enough) {
+  constexpr int doublings = 6;
+  for (int k = 0; k <= doublings; ++k, plan.measurement.contrast_frames *= 2) {
+    TODBENCH_TRY(const auto prediction, predict_plan(plan, inputs));
+    if (std::ranges::all_of(prediction.contrasts, enough)) return plan.measurement.contrast_frames;
+  }
+  return std::nullopt;
+}
+
+Result<std::optional<int>> deciding_contrast_frames(const Plan& plan, const ExperimentInputs& inputs,
+                                                    const ContrastPrediction& contrast, double least_acuity_per_mrad,
+                                                    double floor_ln) {
+  if (!contrast.s75_mrad) return std::nullopt;
+  const double margin = std::abs(std::log(*contrast.s75_mrad * least_acuity_per_mrad));
+  if (margin <= floor_ln || margin > std::hypot(floor_ln, contrast.contrast_half_width)) return std::nullopt;
+  const double deciding = std::sqrt(margin * margin - floor_ln * floor_ln);
+  return enough_contrast_frames(plan, inputs, [&](const ContrastPrediction& one) {
+    return !same_contrast(one.delta_t_k, contrast.delta_t_k) || 2 * one.contrast_half_width <= deciding;
+  });
 }
 
 void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Plan& plan, const ExperimentInputs& inputs,

@@ -2,6 +2,8 @@
 // Expected scatter of the effective contrast that a camera measures, and its part of the interval of S75.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include "bench/forecast/prediction.h"
@@ -28,5 +30,19 @@ namespace todbench {
 /// (tod/psychometric/contrast_slope.h) adds it to the curve. `looks`: as in contrast_half_width(), for each contrast.
 void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Plan& plan, const ExperimentInputs& inputs,
                            const std::vector<std::vector<int>>& looks);
+
+/// Returns the least number of frames of the measured contrast ([measurement] contrast_frames) with which every
+/// contrast of the plan is predicted to be `enough`: the plan's, or twice to 64 times as many. Empty if 64 times as
+/// many are not. Errors: those of predict_plan().
+[[nodiscard]] Result<std::optional<int>> enough_contrast_frames(
+    Plan plan, const ExperimentInputs& inputs, const std::function<bool(const ContrastPrediction&)>& enough);
+
+/// Returns the frames of the measured contrast with which presentations decide a limit for a camera of the predicted
+/// acuity: its scatter then makes at most half of the half-width that decides. `floor_ln`: half-width of the stated
+/// rows. Empty if presentations decide with the plan's number, if the stated rows alone prevent the decision, or if 64
+/// times as many frames are not enough. Errors: those of predict_plan().
+[[nodiscard]] Result<std::optional<int>> deciding_contrast_frames(const Plan& plan, const ExperimentInputs& inputs,
+                                                                  const ContrastPrediction& contrast,
+                                                                  double least_acuity_per_mrad, double floor_ln);
 
 }  // namespace todbench

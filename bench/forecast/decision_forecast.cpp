@@ -11,8 +11,8 @@
 #include "acquisition/base/normal.h"
 #include "acquisition/base/try.h"
 #include "bench/forecast/bench_time.h"
+#include "bench/forecast/contrast_forecast.h"
 #include "bench/forecast/limit_forecast.h"
-#include "bench/forecast/precision_frontier.h"
 #include "bench/forecast/ramp_advice.h"
 #include "bench/plan/plan_options.h"
 #include "bench/text/text.h"
@@ -181,6 +181,7 @@ std::optional<DecisionDesign> design_of(const Plan& plan, const ContrastPredicti
   trials.stated = {};
   DecisionDesign design{.frames = plan.schedule.frames_per_presentation,
                         .phases = plan.target.phases,
+                        .contrast_frames = plan.measurement.contrast_frames,
                         .ramp_k_per_s = std::nullopt,
                         .asked_percent = std::nullopt,
                         .bench_s = bench_s,
@@ -257,11 +258,24 @@ Result<std::vector<DecisionForecast>> decision_forecasts(const Plan& asked, cons
   TODBENCH_TRY(const auto planned, predict_plan(plan, inputs));
   TODBENCH_TRY(const auto budget, curve_uncertainty(plan, expected_curve(planned), {}, std::nullopt));
   const CurveUncertainty* rows = budget ? &*budget : nullptr;
+  int most_contrast_frames = 0;
   for (const AcuityLimit& limit : plan.limits.acuity) {
     const ContrastPrediction* contrast = expected_at(planned, limit.delta_t_k);
-    if (contrast != nullptr) forecasts.push_back(forecast_of(limit, 1 / *contrast->s75_mrad, rows));
+    if (contrast == nullptr) continue;
+    DecisionForecast& forecast = forecasts.emplace_back(forecast_of(limit, 1 / *contrast->s75_mrad, rows));
+    forecast.contrast_percent = percent_of_ln(contrast->contrast_half_width);
+    TODBENCH_TRY(forecast.contrast_frames,
+                 deciding_contrast_frames(plan, inputs, *contrast, limit.least_acuity_per_mrad,
+                                          std::log1p(forecast.floor_percent / 100)));
+    most_contrast_frames = std::max(most_contrast_frames, forecast.contrast_frames.value_or(0));
   }
-  const std::vector<Plan> plans = varied_plans(plan, inputs);
+  std::vector<Plan> plans = varied_plans(plan, inputs);
+  if (most_contrast_frames > plan.measurement.contrast_frames) {
+    Plan other = plan;
+    other.measurement.contrast_frames = most_contrast_frames;
+    const std::vector<Plan> more = varied_plans(other, inputs);
+    plans.insert(plans.end(), more.begin(), more.end());
+  }
   for (std::size_t i = 0; i < plans.size(); ++i) {
     TODBENCH_TRY(const auto prediction, predict_plan(plans[i], inputs));
     const auto presentations = expected_presentations(plans[i], inputs.plates, prediction.contrasts);
@@ -302,8 +316,16 @@ std::string open_by_budget(const Plan& plan, const std::vector<ContrastPredictio
 std::string in_words(const DecisionForecast& forecast) {
   std::string text = fmt::format("{} K, at least {} 1/mrad: ", number_text(forecast.delta_t_k),
                                  number_text(forecast.least_acuity_per_mrad));
+  const std::string of_contrast =
+      forecast.contrast_frames
+          ? fmt::format(
+                ". The measured contrast alone makes ± {:.2g} %, which no presentation reduces; with {} frames of "
+                "the contrast ([measurement] contrast_frames) presentations decide",
+                forecast.contrast_percent, *forecast.contrast_frames)
+          : "";
   if (forecast.rows.empty())
-    return text + "the plan states no rows of a budget, so that every further presentation narrows the interval";
+    return text + "the plan states no rows of a budget" +
+           (of_contrast.empty() ? ", so that every further presentation narrows the interval" : of_contrast);
   text += fmt::format(
       "the stated rows of the budget make ± {:.2g} % (95 %), of which {} alone makes ± {:.2g} %. The smallest "
       "half-width of the trials that matters is {:.2g} %: below it the deciding interval shrinks by less than 5 %",
@@ -313,7 +335,7 @@ std::string in_words(const DecisionForecast& forecast) {
               ? fmt::format(". {:.0f} s of bench time are enough for it; more frames hardly shorten the interval",
                             *forecast.enough_bench_s)
               : std::string(". None of these designs is that precise: more frames still narrow the interval");
-  return text;
+  return text + of_contrast;
 }
 
 }  // namespace todbench

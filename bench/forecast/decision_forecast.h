@@ -61,6 +61,7 @@ struct CameraChance {
 struct DecisionDesign {
   std::vector<int> frames{};             ///< per presentation: one number for all contrasts, or one for each
   int phases = 0;                        ///< per set-up and contrast
+  int contrast_frames = 0;               ///< frames of the measured contrast
   std::optional<double> ramp_k_per_s{};  ///< of a ramp, which has no phases
   /// Half-width at which an adaptive schedule ends, in percent.
   std::optional<double> asked_percent{};
@@ -89,6 +90,10 @@ struct DecisionForecast {
   double floor_percent = 0;                ///< half-width of all stated rows; 0: no budget
   double smallest_half_width_percent = 0;  ///< smallest_half_width_ln()
   std::vector<FloorRow> rows{};            ///< largest first
+  /// Half-width that the scatter of the measured contrast makes in the plan; presentations do not reduce it.
+  double contrast_percent = 0;
+  /// With contrast_percent, deciding_contrast_frames(); empty if the number of the plan need not change.
+  std::optional<int> contrast_frames{};
   std::vector<DecisionDesign> designs{};   ///< by bench time
   std::optional<double> enough_bench_s{};  ///< least time with the smallest half-width that matters
 };
@@ -100,8 +105,8 @@ struct DecisionForecast {
 /// Forecasts every limit on acuity whose contrast has a threshold, for the plan and for its variants. Variants of an
 /// adaptive schedule have a quarter to four times the half-width. Variants of a ramp have a quarter to four times the
 /// rate, at most the rate that a stated lag of the plate allows. Other variants have 1 to 64 frames with graded
-/// answers, or a quarter to four times the phases with binary answers. Errors: those of predict_plan() and
-/// curve_uncertainty().
+/// answers, or a quarter to four times the phases with binary answers. If the measured contrast prevents a decision,
+/// the same variants follow with deciding_contrast_frames(). Errors: those of predict_plan() and curve_uncertainty().
 [[nodiscard]] Result<std::vector<DecisionForecast>> decision_forecasts(const Plan& plan,
                                                                        const ExperimentInputs& inputs);
 

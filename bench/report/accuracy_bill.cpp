@@ -266,8 +266,9 @@ std::string need_in_words(const Demand& demand, const DemandNeed& need, std::siz
   if (!need.share)
     return fmt::format(
         "No number of presentations decides on the acuity at {}: it is {} % from its limit; the stated "
-        "rows of the budget make ± {} %, and the measured contrast ± {} %.",
-        at, percent_of_ln(need.margin), percent_of_ln(need.floor), percent_of_ln(need.contrast));
+        "rows of the budget make ± {} %, and the measured contrast ± {} %{}.",
+        at, percent_of_ln(need.margin), percent_of_ln(need.floor), percent_of_ln(need.contrast),
+        need.margin > need.floor ? ", which more frames of the contrast ([measurement] contrast_frames) reduce" : "");
   const auto needed = static_cast<std::size_t>(std::ceil(*need.share * static_cast<double>(presentations) - 1e-9));
   if (demand.decision != VerdictKind::inconclusive)
     return fmt::format("The decision on the acuity at {} needs about {} of the {} presentations.", at, needed,

@@ -271,6 +271,7 @@ TEST(AccuracyBill, StatesTheTimeOfDecisionsAndWhatAnOpenOneNeeds) {
   // The measured contrast alone makes 0.7 %.
   curve.points[0].fit.contrast_u = 0.007 / 1.96;
   EXPECT_THAT(text(), HasSubstr("No number of presentations decides on the acuity at 16.9 K"));
+  EXPECT_THAT(text(), HasSubstr("which more frames of the contrast ([measurement] contrast_frames) reduce"));
 }
 
 TEST(AccuracyBill, NeedsAsManyPresentationsAsGradedAnswersDo) {
