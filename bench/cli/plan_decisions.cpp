@@ -232,9 +232,7 @@ Json best_design_json(const BestDesign& found) {
 }
 
 std::string design_toml(const BestDesign& found) {
-  return fmt::format("# Design of least bench time ({:.0f} s instead of {:.0f} s), from `todbench plan --optimise`.\n",
-                     found.best.bench_s, found.as_planned.bench_s) +
-         to_toml(found.best.plan);
+  return "# Design of `todbench plan --optimise`: " + times_in_words(found) + ".\n" + to_toml(found.best.plan);
 }
 
 Result<std::optional<ViewingProposal>> viewing_of(const std::vector<double>& delta_t_k, const ExperimentInputs& inputs,

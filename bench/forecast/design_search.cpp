@@ -11,10 +11,10 @@
 
 #include "acquisition/base/try.h"
 #include "bench/forecast/bench_time.h"
+#include "bench/forecast/contrast_forecast.h"
 #include "bench/forecast/decision_forecast.h"
 #include "bench/forecast/limit_forecast.h"
 #include "bench/forecast/mounting_choices.h"
-#include "bench/forecast/precision_frontier.h"
 #include "bench/forecast/ramp_advice.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/run_checks.h"
@@ -43,6 +43,9 @@ class Criterion {
   Criterion(const Plan& plan, const DesignRequest& request, double half_width_percent, const CurveUncertainty* budget)
       : plan_(plan), decide_(request.decide), half_width_percent_(half_width_percent), budget_(budget) {}
 
+  [[nodiscard]] bool met(const PricedDesign& design) const {
+    return std::ranges::all_of(design.contrasts, [&](const ContrastPrediction& contrast) { return met(contrast); });
+  }
   [[nodiscard]] bool met(const ContrastPrediction& contrast) const {
     if (!contrast.uncertainty_percent || !contrast.s75_mrad) return false;
     if (*contrast.uncertainty_percent > (decide_ ? most_percent(plan_.limits) : half_width_percent_)) return false;
@@ -65,22 +68,15 @@ class Criterion {
 
 /// Frames of the measured contrast: the plan's, doubled until their scatter makes at most half of the half-width that
 /// the criterion allows; the plan's if 64 times as many are not enough.
-Result<int> contrast_frames(Plan plan, const ExperimentInputs& inputs, const Criterion& criterion) {
-  constexpr int doublings = 6;
-  const int planned = plan.measurement.contrast_frames;
-  for (int k = 0; k <= doublings; ++k) {
-    TODBENCH_TRY(const auto prediction, predict_plan(plan, inputs));
-    const bool enough = std::ranges::all_of(prediction.contrasts, [&](ContrastPrediction contrast) {
-      const double twice = 2 * contrast.contrast_half_width;
-      if (!(twice > 0)) return true;
-      contrast.uncertainty_percent = 100 * std::expm1(twice);
-      contrast.se_ln_s75 = twice / contrast.interval_factor;
-      return criterion.met(contrast);
-    });
-    if (enough) return plan.measurement.contrast_frames;
-    plan.measurement.contrast_frames *= 2;
-  }
-  return planned;
+Result<int> contrast_frames(const Plan& plan, const ExperimentInputs& inputs, const Criterion& criterion) {
+  TODBENCH_TRY(const auto enough, enough_contrast_frames(plan, inputs, [&](ContrastPrediction contrast) {
+                 const double twice = 2 * contrast.contrast_half_width;
+                 if (!(twice > 0)) return true;
+                 contrast.uncertainty_percent = 100 * std::expm1(twice);
+                 contrast.se_ln_s75 = twice / contrast.interval_factor;
+                 return criterion.met(contrast);
+               }));
+  return enough.value_or(plan.measurement.contrast_frames);
 }
 
 /// Fewest frames of each contrast that meet the criterion; empty: not with most_frames.
@@ -118,10 +114,10 @@ Result<PricedDesign> priced(Plan plan, const ExperimentInputs& inputs) {
   PricedDesign design{.plan = std::move(plan)};
   Plan laboratory = design.plan;
   if (laboratory.target.kind == TargetKind::scene) laboratory.target.kind = TargetKind::scpi;
-  const auto presentations = expected_presentations(laboratory, inputs.plates, prediction.contrasts);
-  const BenchTime time = bench_time(laboratory, inputs.plates, inputs.sensor.frame_rate_hz, presentations);
+  const BenchTime time = expected_bench_time(laboratory, inputs, prediction.contrasts);
   design.bench_s = time.total_s();
   design.changes_s = time.changes_s;
+  design.set_ups = static_cast<int>(time.set_ups);
   design.half_width_percent = prediction.figures.predicted_uncertainty_percent;
   design.contrasts = std::move(prediction.contrasts);
   return design;
@@ -276,7 +272,7 @@ Result<RatedRamp> fastest_ramp(Plan ramp, const ExperimentInputs& inputs, const 
     ramp.schedule.ramp_k_per_s = rates[rate];
     ramp.schedule.frames_per_presentation = {0};
     TODBENCH_TRY(auto design, priced(with_frames(ramp, inputs), inputs));
-    const bool meets = std::ranges::all_of(design.contrasts, [&](const auto& one) { return criterion.met(one); });
+    const bool meets = criterion.met(design);
     return RatedRamp{std::move(design), meets};
   };
   TODBENCH_TRY(auto found, at(0));
@@ -315,6 +311,59 @@ Result<std::optional<RampDesign>> examine_ramps(const Plan& asked, const Experim
   return best;
 }
 
+Plan without_contrasts(Plan plan, const std::vector<double>& left_out_k) {
+  std::vector<double>& contrasts_k = plan.target.delta_t_k;
+  std::vector<int>& frames = plan.schedule.frames_per_presentation;
+  const bool of_each = frames.size() == contrasts_k.size();
+  for (std::size_t i = contrasts_k.size(); i-- > 0;) {
+    if (std::ranges::find(left_out_k, contrasts_k[i]) == left_out_k.end()) continue;
+    contrasts_k.erase(contrasts_k.begin() + static_cast<std::ptrdiff_t>(i));
+    if (of_each) frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  return plan;
+}
+
+/// Half-widths of an adaptive schedule that are compared, in percent of ln S75, the widest first.
+std::vector<double> adaptive_half_widths(const Plan& plan, const DesignRequest& request) {
+  constexpr double step = 0.9, finest_percent = 0.1;
+  // In whole thousandths, never above the request.
+  const auto of_ln = [](double percent) { return std::floor(1e5 * std::log1p(percent / 100)) / 1e3; };
+  if (!request.decide)
+    return {request.half_width_percent ? of_ln(*request.half_width_percent) : plan.schedule.half_width_percent};
+  std::vector<double> out;
+  for (double percent = most_percent(plan.limits); percent > finest_percent; percent *= step)
+    out.push_back(of_ln(percent));
+  return out;
+}
+
+/// The fastest adaptive schedule that meets the criterion, in the set-ups of the plan, with its frames of the contrast
+/// or with `contrast_frames`. Empty if the plan has another schedule, or if none meets it.
+Result<std::optional<PricedDesign>> fastest_adaptive(Plan plan, const ExperimentInputs& inputs,
+                                                     const DesignRequest& request, const Criterion& criterion,
+                                                     int contrast_frames, const std::stop_token& stop) {
+  std::optional<PricedDesign> best;
+  if (plan.schedule.kind != ScheduleKind::adaptive) return best;
+  const int planned_frames = plan.measurement.contrast_frames;
+  for (const double half_width_percent : adaptive_half_widths(plan, request)) {
+    if (stop.stop_requested()) return fail(ErrorCode::interrupted, "stopped on request");
+    plan.schedule.half_width_percent = half_width_percent;
+    for (const int frames : {planned_frames, contrast_frames}) {
+      plan.measurement.contrast_frames = frames;
+      TODBENCH_TRY(auto design, priced(plan, inputs));
+      if (criterion.met(design) && (!best || design.bench_s < best->bench_s)) best = std::move(design);
+    }
+    if (best) break;  // a narrower half-width takes longer
+  }
+  return best;
+}
+
+/// Whether a plan keeps the rules of the designs of the search.
+bool follows_rules(const PricedDesign& design) {
+  const int phases = design.plan.target.phases;
+  return design.plan.schedule.kind != ScheduleKind::constant ||
+         (phases >= phase_choices.front() && design.set_ups * phases >= static_cast<int>(least_graded_presentations));
+}
+
 std::string in_words(const RampDesign& ramp, const PricedDesign& best) {
   const SchedulePlan& schedule = ramp.design.plan.schedule;
   std::vector<std::string> half_widths;
@@ -326,10 +375,20 @@ std::string in_words(const RampDesign& ramp, const PricedDesign& best) {
       *schedule.from_delta_t_k, *schedule.to_delta_t_k, *schedule.ramp_k_per_s,
       ramp.lag_is_stated ? "the stated" : "an assumed", ramp.lag_s,
       largest_ramp_rate(*schedule.from_delta_t_k, ramp.lag_s), ramp.design.bench_s, fmt::join(half_widths, ", "));
-  if (best.plan.schedule.kind == ScheduleKind::ramp) return text + ": it is the fastest design";
+  if (ramp.design.plan == best.plan) return text + ": it is the fastest design";
   if (!ramp.meets) return text + ", which are not enough";
   if (ramp.design.bench_s >= least_gain * best.bench_s) return text + ": it is no faster";
   return text + ": it is faster. Measure the lag of the plate and state max_contrast_lag_s to use it";
+}
+
+/// Keeps a design that is faster than all of the search.
+void keep_faster(BestDesign& found, Search& search, std::optional<PricedDesign> design) {
+  if (!design || (search.best && design->bench_s >= search.best->bench_s)) return;
+  const auto adaptive = [](const PricedDesign& one) { return one.plan.schedule.kind == ScheduleKind::adaptive; };
+  if (search.best && adaptive(*design) && !adaptive(*search.best)) found.not_adaptive_s = search.best->bench_s;
+  found.settled_s.reset();
+  search.least_s = std::min(search.least_s, design->bench_s);
+  search.best = std::move(design);
 }
 
 Error not_found(const Plan& plan, const DesignRequest& request, double half_width_percent, const Search& search,
@@ -374,9 +433,7 @@ Result<BestDesign> best_design(const Plan& asked, const ExperimentInputs& inputs
     found.dropped_contrasts_k = not_needed(plan);
     if (plan.limits.equivalence_margin_percent) found.equivalence_half_width_percent = most_percent(plan.limits);
   }
-  std::erase_if(plan.target.delta_t_k, [&](double delta_t_k) {
-    return std::ranges::find(found.dropped_contrasts_k, delta_t_k) != found.dropped_contrasts_k.end();
-  });
+  plan = without_contrasts(std::move(plan), found.dropped_contrasts_k);
   plan.measurement.registration_frames = registration_frames(plan, inputs.sensor);
   const Criterion criterion(plan, request, half_width_percent, rows);
   const std::size_t set_ups = std::min(least_set_ups, set_ups_of(plan.target));
@@ -406,42 +463,70 @@ Result<BestDesign> best_design(const Plan& asked, const ExperimentInputs& inputs
     search.best = found.ramp->design;
     search.least_s = std::min(search.least_s, search.best->bench_s);
   }
+  TODBENCH_TRY(auto adaptive, fastest_adaptive(without_contrasts(found.as_planned.plan, found.dropped_contrasts_k),
+                                               inputs, request, criterion, settled.measurement.contrast_frames, stop));
+  keep_faster(found, search, std::move(adaptive));
+  found.planned_meets = criterion.met(found.as_planned);
+  if (found.planned_meets && follows_rules(found.as_planned)) keep_faster(found, search, found.as_planned);
   if (!search.best) {
     const std::string by_budget = request.decide ? open_by_budget(plan, found.as_planned.contrasts, rows, decided) : "";
     return tl::unexpected(not_found(plan, request, half_width_percent, search, by_budget));
   }
   found.best = *std::move(search.best);
   found.least_s = search.least_s;
-  found.set_ups = static_cast<int>(set_ups_of(found.best.plan.target));
-  found.unpaired_share = unpaired_share(found.best.plan.target);
+  found.set_ups = found.best.set_ups;
+  // The set-ups of an adaptive schedule are known after its run only.
+  if (found.best.plan.schedule.kind != ScheduleKind::adaptive)
+    found.unpaired_share = unpaired_share(found.best.plan.target);
   return found;
+}
+
+std::string times_in_words(const BestDesign& found) {
+  const auto of = [](const PricedDesign& design) {
+    return fmt::format("{:.0f} s of bench time", design.bench_s) +
+           (design.half_width_percent ? fmt::format(" with half-widths of at most {:.3g} %", *design.half_width_percent)
+                                      : "");
+  };
+  return "the design takes " + of(found.best) + ", the plan as it was " + of(found.as_planned);
 }
 
 std::vector<std::string> in_words(const BestDesign& found) {
   const PricedDesign& best = found.best;
+  const ScheduleKind kind = best.plan.schedule.kind;
   std::vector<std::string> out;
   out.push_back(
-      fmt::format("the design takes {:.0f} s of bench time, the plan as it was {:.0f} s. {:.0f} s of it are "
-                  "changes of the target; no design of this bench with {} set-ups or more is faster than "
-                  "{:.0f} s, whatever its half-width",
-                  best.bench_s, found.as_planned.bench_s, best.changes_s, std::min<int>(found.set_ups, least_set_ups),
-                  found.least_s));
-  out.push_back(found.unpaired_share > 0
-                    ? fmt::format("{} set-ups. {:.0f} % of them have no counterpart rotated by 180 degrees: an error "
-                                  "that changes its sign with this rotation enters S75 with {:.0f} % of its size, and "
-                                  "its scatter is in the interval",
-                                  found.set_ups, 100 * found.unpaired_share, 100 * found.unpaired_share)
-                    : fmt::format("{} set-ups, each with its counterpart rotated by 180 degrees: an error that changes "
-                                  "its sign with this rotation cancels",
-                                  found.set_ups));
+      fmt::format("{}. Changes of the target take {:.0f} s of the design", times_in_words(found), best.changes_s));
+  if (kind == ScheduleKind::constant)
+    out.back() += fmt::format(
+        "; no constant design of this bench with {} set-ups or more is faster than {:.0f} s, whatever its half-width",
+        std::min<int>(found.set_ups, least_set_ups), found.least_s);
+  if (found.planned_meets && found.as_planned.bench_s < best.bench_s)
+    out.push_back(
+        fmt::format("the plan as it was is faster, with fewer than {} phases or {} presentations per contrast",
+                    phase_choices.front(), least_graded_presentations));
+  if (kind == ScheduleKind::adaptive)
+    out.push_back(fmt::format(
+        "the adaptive schedule of the plan to half_width_percent = {:g} is the fastest: {} set-ups are "
+        "expected{}",
+        best.plan.schedule.half_width_percent, found.set_ups,
+        found.not_adaptive_s ? fmt::format(", and the best other design takes {:.0f} s", *found.not_adaptive_s) : ""));
+  else
+    out.push_back(
+        found.unpaired_share > 0
+            ? fmt::format("{} set-ups. {:.0f} % of them have no counterpart rotated by 180 degrees: an error "
+                          "that changes its sign with this rotation enters S75 with {:.0f} % of its size, and "
+                          "its scatter is in the interval",
+                          found.set_ups, 100 * found.unpaired_share, 100 * found.unpaired_share)
+            : fmt::format("{} set-ups, each with its counterpart rotated by 180 degrees: an error that changes "
+                          "its sign with this rotation cancels",
+                          found.set_ups));
   const int phases = best.plan.target.phases;
-  const bool ramp = best.plan.schedule.kind == ScheduleKind::ramp;
-  if (!ramp)
+  if (kind == ScheduleKind::constant)
     out.push_back(
         fmt::format("{} phases in each set-up cancel every harmonic of the pixel grid below {:.1f} per pixel; "
                     "what is left has a new start in each set-up, and its scatter is in the interval",
                     phases, least_harmonic(phases)));
-  if (found.settled_s && !ramp)
+  if (found.settled_s && kind == ScheduleKind::constant)
     out.push_back(
         fmt::format("presentations begin within {:g} % of the set contrast, and their own frames give their "
                     "contrasts; if every contrast settles, the best design takes {:.0f} s",
@@ -453,9 +538,10 @@ std::vector<std::string> in_words(const BestDesign& found) {
                     "its scatter enters S75, and no presentation reduces it",
                     frames, planned));
   if (found.ramp) out.push_back(in_words(*found.ramp, best));
-  const bool by_presentations = std::ranges::any_of(best.contrasts, [&](const ContrastPrediction& contrast) {
-    return contrast.degrees_of_freedom && *contrast.degrees_of_freedom != found.set_ups - 1;
-  });
+  const bool by_presentations =
+      kind != ScheduleKind::adaptive && std::ranges::any_of(best.contrasts, [&](const ContrastPrediction& contrast) {
+        return contrast.degrees_of_freedom && *contrast.degrees_of_freedom != found.set_ups - 1;
+      });
   if (by_presentations)
     out.emplace_back(
         "the set-ups have unequal shares of the information and count as fewer than five: the intervals come from "

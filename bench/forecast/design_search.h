@@ -30,6 +30,7 @@ struct PricedDesign {
   Plan plan;
   double bench_s = 0;                          ///< laboratory_time(): changes, frames, corrections; without computing
   double changes_s = 0;                        ///< part of bench_s for changes of the target
+  int set_ups = 0;                             ///< that the run is expected to show
   std::optional<double> half_width_percent{};  ///< the largest of the contrasts
   std::vector<ContrastPrediction> contrasts{};
 };
@@ -44,7 +45,8 @@ struct RampDesign {
 
 struct BestDesign {
   PricedDesign as_planned, best;
-  double least_s = 0;  ///< bench time of the fastest design examined, whatever its half-width
+  bool planned_meets = false;  ///< whether `as_planned` meets the request
+  double least_s = 0;          ///< bench time of the fastest design examined, whatever its half-width
   int set_ups = 0;
   /// Share of the set-ups without their counterpart, the mounting of the same plate that is rotated by 180 degrees. An
   /// error that reverses its sign with this rotation enters S75 with this share; its scatter is in the interval.
@@ -54,6 +56,8 @@ struct BestDesign {
   std::optional<double> equivalence_half_width_percent{};
   /// Bench time of the best design whose contrasts settle, if `best` has a settling band.
   std::optional<double> settled_s{};
+  /// Bench time of the best design of another kind, if `best` is an adaptive schedule.
+  std::optional<double> not_adaptive_s{};
   /// The fastest ramp that meets the request; empty if the bench or the plan admits none.
   std::optional<RampDesign> ramp{};
 };
@@ -67,10 +71,16 @@ struct BestDesign {
 /// highest contrast, which locates the plate. A ramp between the strongest and the weakest contrast is compared, at the
 /// fastest rate that meets the request, up to the rate that the lag of the plate allows (0.1 s if the plan states
 /// none). The ramp takes 10 to 1200 s in one direction. The ramp is the best design if it is faster and the plan states
-/// the lag. Errors: `invalid_input` (no design examined meets the request; the message states the least half-width, or
-/// the rows of the budget that prevent the decision), predict_plan(), `interrupted`.
+/// the lag. If the plan is an adaptive schedule, it is compared in its own set-ups, at the widest half-width that meets
+/// the request. The plan as it is remains the best design if it meets the request, nothing is faster, and it has at
+/// least three phases and eight presentations per contrast. Errors: `invalid_input` (no design examined meets the
+/// request; the message states the least half-width, or the rows of the budget that prevent the decision),
+/// predict_plan(), `interrupted`.
 [[nodiscard]] Result<BestDesign> best_design(const Plan& plan, const ExperimentInputs& inputs,
                                              const DesignRequest& request, std::stop_token stop);
+
+/// Returns the bench times and half-widths of the design and of the plan as it was.
+[[nodiscard]] std::string times_in_words(const BestDesign& found);
 
 /// Returns sentences about a design: its time, the parts of that time, and the effect of its set-ups.
 [[nodiscard]] std::vector<std::string> in_words(const BestDesign& found);

@@ -232,6 +232,7 @@ TEST_F(Planning, OptimiseWritesAFasterPlanThatPlanAndSimulateTake) {
   const Json json = one_object(found);
   EXPECT_LT(json["bench_s"], json["as_planned"]["bench_s"]);
   EXPECT_EQ(json["bench_s"], json["optimised"]["bench_s"]);
+  EXPECT_THAT(content_of(at("best.toml")), HasSubstr(" s of bench time with half-widths of at most "));
   EXPECT_LT(json["set_ups"], 8);
   EXPECT_EQ(json["optimised"]["mountings_per_plate"].size(), 2U);
   ASSERT_EQ(planned.code, 0) << planned.err;
@@ -266,6 +267,11 @@ TEST_F(Planning, TimeToMeasureStatesItsDifferenceFromTheBill) {
   EXPECT_NEAR(std::stod(text.out.substr(bill + before.size())), one_object(json)["bill"]["total_s"].get<double>(),
               0.06);
   EXPECT_THAT(text.out, HasSubstr(" s of computing)"));
+  for (const Json& row : one_object(json)["frontier"]) {
+    if (row["planned"]) {
+      EXPECT_EQ(row["predicted_s"], one_object(json)["predicted_measurement_s"]);
+    }
+  }
 }
 
 TEST_F(Planning, NeutralEffectsShareALineAndStateTheirReasonsOnRequest) {

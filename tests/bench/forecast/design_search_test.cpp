@@ -2,10 +2,15 @@
 // The design of least bench time.
 #include "bench/forecast/design_search.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "bench/forecast/bench_time.h"
+#include "bench/forecast/bill_forecast.h"
 #include "bench/forecast/decision_forecast.h"
 #include "bench/forecast/ramp_advice.h"
 #include "tod/schedule/schedule.h"
@@ -13,10 +18,12 @@
 namespace todbench {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 struct SearchedBench {
   LoadedPlan loaded;
@@ -41,6 +48,78 @@ SearchedBench bench_of(const Plan& plan) {
   EffectPlanner planner;
   ExperimentInputs inputs = experiment_inputs(loaded, planner).value();
   return {std::move(loaded), std::move(inputs)};
+}
+
+/// Ends after fewer set-ups than the plan has.
+Plan adaptive_plan() {
+  Plan plan = plan_of_defaults();
+  plan.schedule.kind = ScheduleKind::adaptive;
+  plan.schedule.half_width_percent = 4;
+  return plan;
+}
+
+TEST(BillForecast, StatesTheSetUpsThatAnAdaptiveScheduleIsExpectedToVisit) {
+  const SearchedBench bench = bench_of(adaptive_plan());
+  const Plan plan = as_measured(with_frames(bench.loaded.plan(), bench.inputs));
+  const BenchTime time = expected_bench_time(plan, bench.inputs, predict_plan(plan, bench.inputs).value().contrasts);
+
+  const BillRow changes = bill_forecast(bench.loaded.plan(), bench.inputs).value().rows.at(0);
+
+  EXPECT_LT(time.set_ups, set_ups_of(plan.target));
+  EXPECT_THAT(changes.bought, HasSubstr(fmt::format("{} set-ups", time.set_ups)));
+  // The shortest change to another set-up is that of the mounting.
+  EXPECT_GE(*changes.seconds, static_cast<double>(time.set_ups) * plan.target.mounting_change_s);
+}
+
+TEST(BillForecast, NamesTheFramesOfTheContrastThatDecide) {
+  Plan plan = plan_of_defaults();
+  plan.target.delta_t_k = {0.05};
+  const double s75_mrad = [&] {
+    const SearchedBench bench = bench_of(plan);
+    return *predict_plan(bench.loaded.plan(), bench.inputs).value().contrasts.at(0).s75_mrad;
+  }();
+  plan.limits.acuity = {{0.05, std::exp(-0.05) / s75_mrad}};
+  const SearchedBench bench = bench_of(plan);
+  const auto sentences = [&](const Plan& asked) { return bill_forecast(asked, bench.inputs).value().sentences; };
+
+  const auto forecast = decision_forecasts(bench.loaded.plan(), bench.inputs).value().at(0);
+
+  ASSERT_TRUE(forecast.contrast_frames);
+  EXPECT_THAT(sentences(plan), Contains(AllOf(HasSubstr("No number of presentations decides"),
+                                              HasSubstr(fmt::format("with {} frames of the contrast ([measurement] "
+                                                                    "contrast_frames)",
+                                                                    *forecast.contrast_frames)))));
+  EXPECT_THAT(in_words(forecast), HasSubstr(fmt::format("with {} frames of the contrast", *forecast.contrast_frames)));
+  // The designs reach what the planned contrast does not.
+  double planned = 1e9, more = 1e9;
+  for (const DecisionDesign& design : forecast.designs) {
+    double& least = design.contrast_frames == plan.measurement.contrast_frames ? planned : more;
+    least = std::min(least, design.half_width_percent);
+  }
+  EXPECT_LT(more, 0.7 * planned);
+  plan.measurement.contrast_frames = *forecast.contrast_frames;
+  EXPECT_THAT(sentences(plan), Not(Contains(HasSubstr("No number of presentations decides"))));
+}
+
+TEST(DesignSearch, CallsNoSlowerDesignTheLeastOfAnAdaptivePlan) {
+  const SearchedBench bench = bench_of(adaptive_plan());
+
+  for (const std::optional<double> asked_percent : {std::optional<double>{}, std::optional<double>{3}}) {
+    const auto found = best_design(bench.loaded.plan(), bench.inputs, {.half_width_percent = asked_percent}, {});
+
+    ASSERT_TRUE(found) << found.error().message;
+    EXPECT_LE(*found->best.half_width_percent, asked_percent.value_or(*found->as_planned.half_width_percent));
+    EXPECT_GE(found->best.bench_s, found->least_s);
+    if (!asked_percent) {
+      EXPECT_LE(found->best.bench_s, found->as_planned.bench_s);
+    }
+    if (found->best.plan.schedule.kind == ScheduleKind::adaptive) {
+      EXPECT_THAT(in_words(*found), Contains(HasSubstr("the adaptive schedule of the plan")));
+      EXPECT_THAT(in_words(*found), Not(Contains(HasSubstr("is faster than"))));
+    } else {
+      EXPECT_THAT(in_words(*found), Contains(HasSubstr("no constant design of this bench")));
+    }
+  }
 }
 
 TEST(DesignSearch, FindsLessTimeForAnAskedHalfWidthAndKeepsFiveSetUps) {
