@@ -19,7 +19,7 @@
 namespace todbench {
 namespace {
 
-void add_rows(AccuracyBill& bill, const Plan& plan, const BenchTime& time, double frame_rate_hz,
+void add_rows(AccuracyBill& bill, const BenchTime& time, double frame_rate_hz,
               const std::vector<ContrastPrediction>& contrasts) {
   const auto seconds = [&](std::uint64_t frames) { return static_cast<double>(frames) / frame_rate_hz; };
   bill.rows.push_back({std::string(changes_part), time.changes_s - time.all_measures.changes_s - time.warm_up_s,
@@ -153,7 +153,7 @@ Result<AccuracyBill> bill_forecast(const Plan& asked, const ExperimentInputs& in
   const double frame_rate_hz = inputs.sensor.frame_rate_hz;
   const BenchTime time = expected_bench_time(plan, inputs, prediction.contrasts);
   bill.total_s = time.total_s() - time.warm_up_s;
-  if (frame_rate_hz > 0) add_rows(bill, plan, time, frame_rate_hz, prediction.contrasts);
+  if (frame_rate_hz > 0) add_rows(bill, time, frame_rate_hz, prediction.contrasts);
   TODBENCH_TRY(const auto floors, floors_ln(plan, prediction));
   if (std::ranges::none_of(floors, [](double floor) { return floor > 0; }))
     bill.sentences.emplace_back(no_budget_sentence);
