@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <map>
 #include <string>
 #include <vector>
@@ -21,10 +23,15 @@ struct RightCamera {
   SensorSpec spec = sc2000();
 };
 
-/// Plain, with patterns larger than the noise, with noise that lines share, with noise that the next frames remember.
+/// Plain, with patterns larger than the noise, with noise that lines share, with noise that the next frames remember,
+/// and with small detectors, whose pictures of triangles depend most on the phase.
 inline std::vector<RightCamera> right_cameras() {
-  std::vector<RightCamera> cameras{
-      {"SC2000"}, {"fixed pattern 0.1 K"}, {"row and column noise 0.05 K"}, {"noise correlation 0.6"}};
+  std::vector<RightCamera> cameras{{"SC2000"},
+                                   {"fixed pattern 0.1 K"},
+                                   {"row and column noise 0.05 K"},
+                                   {"noise correlation 0.6"},
+                                   {"detectors of 0.6 pitch"}};
+  cameras[4].spec.detector_um = 0.6 * cameras[4].spec.pitch_um;
   cameras[1].spec.fixed_pattern_k = 0.1;
   cameras[2].spec.row_noise_k = cameras[2].spec.column_noise_k = 0.05;
   cameras[3].spec.noise_correlation = 0.6;
@@ -36,8 +43,11 @@ struct FalseAlarms {
   int runs = 0;
   int place = 0;     ///< refused
   int followed = 0;  ///< judged by another place than the one asked for
-  int transfer = 0, noise = 0, correlation = 0, residue = 0;
-  [[nodiscard]] std::array<int, 6> all() const { return {place, followed, transfer, noise, correlation, residue}; }
+  int transfer = 0, presented = 0, noise = 0, correlation = 0, residue = 0;
+  double largest_presented = 0;  ///< largest change of the contrast of the presentations relative to its limit
+  [[nodiscard]] std::array<int, 7> all() const {
+    return {place, followed, transfer, presented, noise, correlation, residue};
+  }
 };
 
 /// Exposures from `first` on. Pictures of one model are formed once for all runs.
@@ -110,8 +120,13 @@ inline FalseAlarms right_runs(const RightCamera& camera, std::uint64_t seed, int
     const auto& residue = result->constancy.residue;
     ++out.runs;
     out.place += result->ended_by ? 1 : 0;
-    for (const std::string& note : result->notes) out.followed += note.starts_with("the picture was followed") ? 1 : 0;
+    for (const std::string& note : result->notes)
+      out.followed += note.find("px from the requested place") != std::string::npos ? 1 : 0;
     out.transfer += beyond(transfer_change(result->contrasts));
+    const auto presented = presented_change(result->constancy.presented);
+    out.presented += beyond(presented);
+    if (presented)
+      out.largest_presented = std::max(out.largest_presented, std::abs(presented->value) / presented->limit);
     out.noise += beyond(noise_change(result->constancy.noise));
     out.correlation += beyond(correlation_change(result->constancy.noise));
     out.residue += residue && residue->share > residue->limit ? 1 : 0;
