@@ -73,8 +73,7 @@ std::optional<DecisionNeed> needed_for(AccuracyBill& bill, const AcuityLimit& li
   if (share) return DecisionNeed{*share, std::sqrt(margin * margin - fixed * fixed)};
   bill.sentences.push_back(fmt::format(
       "No number of presentations decides the predicted acuity at {}: it is {} % from its limit; the stated rows of "
-      "the "
-      "budget make ± {} %, and the measured contrast ± {} %.{}",
+      "the budget make ± {} %, and the measured contrast ± {} %.{}",
       at, significant(100 * std::expm1(margin), 2), significant(100 * std::expm1(floor_ln), 2),
       significant(100 * std::expm1(contrast.contrast_half_width), 2),
       contrast_frames ? fmt::format(" Presentations decide it with {} frames of the contrast ([measurement] "
