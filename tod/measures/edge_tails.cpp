@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "acquisition/base/normal.h"
 
@@ -229,10 +230,12 @@ std::optional<TailFit> TailSamples::fit(const TailBounds& bounds) const {
   double variance = 1e-4;
   for (int pass = 0; pass < 2; ++pass) variance = variance_about(fit_with(bounds, variance).best());
   TailFit out = fit_with(bounds, variance);
-  std::vector<double> direction(unknowns_ + slacks, 0.0);
-  for (std::size_t i = 0; i < halos; ++i) direction[first_halo + i] = wide(i, bounds) ? 0 : 1;
-  const HaloSum most = halo_sum(problem_of(bounds, variance, -1).farthest(direction, 25), bounds);
-  out.most_signed_halo_ = most.halos / most.contrast;
+  const std::vector<double> either = problem_of(bounds, variance, -1).best();
+  const BoundedLeastSquares sharper = problem_of(bounds, std::min(variance, variance_about(either)), -1);
+  const std::vector<double>& x = sharper.best();
+  const double sum = std::accumulate(x.begin() + first_halo, x.begin() + first_shading, 0.0);
+  constexpr double certain = 40;  // of chi-square; a few of the shares of 23 halos are independent
+  if (sum < 0 && sharper.excess(out.best()) > certain) out.undershoot_ = -sum / x[step];
   return out;
 }
 

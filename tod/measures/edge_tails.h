@@ -83,10 +83,10 @@ class TailFit {
   [[nodiscard]] const TailBounds& bounds() const { return bounds_; }
   /// Returns the upper end of the 95 % interval of the share of halos that are part of the MTF.
   [[nodiscard]] double halo_allowance() const;
-  /// Returns the largest share of the contrast in the halos of the MTF if they may be negative, with a chi-square of at
-  /// most 25 above the minimum. Clearly below 0: the picture undershoots beside the edge, which no halo of this model
+  /// Returns the negative share of the step in all halos if they may be negative and the chi-square is
+  /// then smaller by at least 40; otherwise 0. The picture undershoots beside the edge, which no halo of this model
   /// describes (AC coupling, sharpening over many pixels).
-  [[nodiscard]] double most_signed_halo() const { return most_signed_halo_; }
+  [[nodiscard]] double undershoot() const { return undershoot_; }
   /// Return the ends of the 95 % interval of the share of the step in halos that are too wide for the MTF.
   [[nodiscard]] double least_wide_share() const { return farthest_wide_share(-1); }
   [[nodiscard]] double most_wide_share() const { return farthest_wide_share(1); }
@@ -98,7 +98,7 @@ class TailFit {
   [[nodiscard]] double farthest_wide_share(double sign) const;
   std::size_t unknowns_ = 0;
   TailBounds bounds_;
-  double noise_ = 0, most_signed_halo_ = 0;
+  double noise_ = 0, undershoot_ = 0;
   std::shared_ptr<const BoundedLeastSquares> problem_;  ///< unknowns, then slacks
   std::vector<double> stated_;
 };

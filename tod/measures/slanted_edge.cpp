@@ -502,11 +502,11 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   for (int k = 0; k <= frequencies; ++k) edge.frequency_per_pitch.push_back(k / static_cast<double>(frequencies));
   const auto tails = options.plate ? plate_tails(in, *found, *options.plate) : own_tails(in, *found, seen, options);
   if (!tails) return fail(ErrorCode::invalid_input, "the edge has too few pixels beyond its profile");
-  if (tails->fit.most_signed_halo() < -least_undershoot) {
+  if (tails->fit.undershoot() > least_undershoot) {
     return fail(ErrorCode::not_identifiable,
-                fmt::format("the picture undershoots beside the edge by at least {:.1f} % of the step, as behind an AC "
+                fmt::format("the picture undershoots beside the edge by {:.1f} % of the step, as behind an AC "
                             "coupling or a sharpening over many pixels: the MTF at low frequencies is not known",
-                            -100 * tails->fit.most_signed_halo()));
+                            100 * tails->fit.undershoot()));
   }
   // Shading is an unknown of the tails: use the original picture.
   const std::vector<EdgeSample> samples = samples_near(seen, found->line, found->reach);
