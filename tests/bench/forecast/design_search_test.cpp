@@ -74,6 +74,7 @@ TEST(BillForecast, StatesTheSetUpsThatAnAdaptiveScheduleIsExpectedToVisit) {
 TEST(BillForecast, NamesTheFramesOfTheContrastThatDecide) {
   Plan plan = plan_of_defaults();
   plan.target.delta_t_k = {0.05};
+  plan.limits.acuity.clear();
   const double s75_mrad = [&] {
     const SearchedBench bench = bench_of(plan);
     return *predict_plan(bench.loaded.plan(), bench.inputs).value().contrasts.at(0).s75_mrad;
