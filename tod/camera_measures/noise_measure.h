@@ -45,8 +45,8 @@ struct NoiseSeries {
 };
 
 /// Takes frames of a constant scene, without a non-uniformity correction between them, and evaluates their noise.
-/// Errors: `integrity` (corrections interrupted three series, the picture changed abruptly, or the noise changed), those of
-/// FrameTaker::next(), window_kelvin() and NoiseCube.
+/// Errors: `integrity` (corrections interrupted three series, the picture changed abruptly, or the noise changed),
+/// those of FrameTaker::next(), window_kelvin() and NoiseCube.
 [[nodiscard]] Result<NoiseSeries> measure_series_noise(FrameTaker& taker, const RadiometricScale& scale,
                                                        const NoiseOptions& options, const std::stop_token& stop);
 

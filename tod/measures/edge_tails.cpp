@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 
 #include "acquisition/base/normal.h"
 
@@ -152,7 +151,7 @@ void TailSamples::add(const std::vector<double>& columns, double value, int pixe
   }
 }
 
-BoundedLeastSquares TailSamples::problem_of(const TailBounds& bounds, double variance, double least_halo) const {
+TailFit TailSamples::fit_with(const TailBounds& bounds, double variance) const {
   const std::size_t n = unknowns_ + slacks;
   std::vector<double> gram(n * n), right(n);
   for (std::size_t i = 0; i < unknowns_; ++i) {
@@ -178,17 +177,11 @@ BoundedLeastSquares TailSamples::problem_of(const TailBounds& bounds, double var
   }
   std::vector<double> low(n, -HUGE_VAL), high(n, HUGE_VAL);
   low[step] = 0.2, high[step] = 5;
-  low[slope] = 0;
-  std::fill(low.begin() + first_halo, low.begin() + first_shading, least_halo);
+  std::fill(low.begin() + slope, low.begin() + first_shading, 0.0);
   std::fill(low.begin() + static_cast<std::ptrdiff_t>(unknowns_), low.end(), 0.0);
-  return {gram, right, low, high};
-}
-
-TailFit TailSamples::fit_with(const TailBounds& bounds, double variance) const {
-  const std::size_t n = unknowns_ + slacks;
   TailFit out;
   out.unknowns_ = unknowns_, out.bounds_ = bounds, out.noise_ = std::sqrt(variance);
-  out.problem_ = std::make_shared<BoundedLeastSquares>(problem_of(bounds, variance, 0));
+  out.problem_ = std::make_shared<BoundedLeastSquares>(gram, right, low, high);
   std::vector<double> weaker(n, 0.0);
   std::fill(weaker.begin() + first_halo, weaker.begin() + first_shading, -1.0);
   weaker[slope] = -1 / cauchy_slope;
@@ -229,14 +222,7 @@ std::optional<TailFit> TailSamples::fit(const TailBounds& bounds) const {
   if (side(false) < 10 || side(true) < 10) return std::nullopt;
   double variance = 1e-4;
   for (int pass = 0; pass < 2; ++pass) variance = variance_about(fit_with(bounds, variance).best());
-  TailFit out = fit_with(bounds, variance);
-  const std::vector<double> either = problem_of(bounds, variance, -1).best();
-  const BoundedLeastSquares sharper = problem_of(bounds, std::min(variance, variance_about(either)), -1);
-  const std::vector<double>& x = sharper.best();
-  const double sum = std::accumulate(x.begin() + first_halo, x.begin() + first_shading, 0.0);
-  constexpr double certain = 40;  // of chi-square; a few of the shares of 23 halos are independent
-  if (sum < 0 && sharper.excess(out.best()) > certain) out.undershoot_ = -sum / x[step];
-  return out;
+  return fit_with(bounds, variance);
 }
 
 }  // namespace todbench

@@ -83,10 +83,6 @@ class TailFit {
   [[nodiscard]] const TailBounds& bounds() const { return bounds_; }
   /// Returns the upper end of the 95 % interval of the share of halos that are part of the MTF.
   [[nodiscard]] double halo_allowance() const;
-  /// Returns the negative share of the step in all halos if they may be negative and the chi-square is
-  /// then smaller by at least 40; otherwise 0. The picture undershoots beside the edge, which no halo of this model
-  /// describes (AC coupling, sharpening over many pixels).
-  [[nodiscard]] double undershoot() const { return undershoot_; }
   /// Return the ends of the 95 % interval of the share of the step in halos that are too wide for the MTF.
   [[nodiscard]] double least_wide_share() const { return farthest_wide_share(-1); }
   [[nodiscard]] double most_wide_share() const { return farthest_wide_share(1); }
@@ -98,7 +94,7 @@ class TailFit {
   [[nodiscard]] double farthest_wide_share(double sign) const;
   std::size_t unknowns_ = 0;
   TailBounds bounds_;
-  double noise_ = 0, undershoot_ = 0;
+  double noise_ = 0;
   std::shared_ptr<const BoundedLeastSquares> problem_;  ///< unknowns, then slacks
   std::vector<double> stated_;
 };
@@ -114,8 +110,6 @@ class TailSamples {
 
  private:
   [[nodiscard]] TailFit fit_with(const TailBounds& bounds, double variance) const;
-  /// Returns the least-squares problem. `least_halo`: lower bound of each halo.
-  [[nodiscard]] BoundedLeastSquares problem_of(const TailBounds& bounds, double variance, double least_halo) const;
   /// Returns the variance of a pixel from the residuals of a fit. It is larger if the residuals of neighbours are
   /// correlated.
   [[nodiscard]] double variance_about(const std::vector<double>& x) const;

@@ -45,11 +45,6 @@ EdgeAxis axis_across(const cv::Mat1d& p) {
   return mean_of(x.mul(x)) >= mean_of(y.mul(y)) ? EdgeAxis::x : EdgeAxis::y;
 }
 
-/// Share of the step above which negative tails are not accepted; model errors of lenses stay below it.
-constexpr double least_undershoot = 0.005;
-/// Larger sums are combinations of halos that cancel each other.
-constexpr double most_undershoot = 0.3;
-
 /// A picture whose edge is nearly vertical with the bright side right; its unit is arbitrary.
 struct Upright {
   cv::Mat1d picture;
@@ -504,14 +499,6 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   for (int k = 0; k <= frequencies; ++k) edge.frequency_per_pitch.push_back(k / static_cast<double>(frequencies));
   const auto tails = options.plate ? plate_tails(in, *found, *options.plate) : own_tails(in, *found, seen, options);
   if (!tails) return fail(ErrorCode::invalid_input, "the edge has too few pixels beyond its profile");
-  // Rounding without noise makes steps, which any sum of shares describes.
-  const double undershoot = tails->fit.undershoot();
-  if (undershoot > std::max(least_undershoot, 2 * rounding_of(*found)) && undershoot < most_undershoot) {
-    return fail(ErrorCode::not_identifiable,
-                fmt::format("the picture undershoots beside the edge by {:.1f} % of the step, as behind an AC "
-                            "coupling or a sharpening over many pixels: the MTF at low frequencies is not known",
-                            100 * undershoot));
-  }
   // Shading is an unknown of the tails: use the original picture.
   const std::vector<EdgeSample> samples = samples_near(seen, found->line, found->reach);
   TODBENCH_TRY(const auto displacement, line_displacement(*found));
