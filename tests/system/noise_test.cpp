@@ -137,7 +137,7 @@ TEST(NoiseCommand, StatesNoNoiseOfCountsThatHoldNone) {
                     cut =
                         folder.write("cut.raw", white_frames(4090, 10, 4095)).string() + "?width=80&height=60&bits=12",
                     below = folder.write("below.raw", white_frames(8000, 10, 8005)).string() + "?width=80&height=60",
-                    padded = folder.write("padded.raw", in_steps(white_frames(8000, 7), 16)).string() +
+                    padded = folder.write("padded.raw", in_steps(white_frames(8000, 4.8), 16)).string() +
                              "?width=80&height=60",
                     still = folder.write("still.raw", white_frames(8000, 0)).string() + "?width=80&height=60";
 
