@@ -148,9 +148,7 @@ Verdict judge(const JudgementInput& evidence) {
   for (const DemandKindRow& row : demand_kinds()) {
     for (Demand& demand : row.judge(row, evidence)) verdict.demands.push_back(std::move(demand));
   }
-  for (Demand& demand : verdict.demands) {
-    if (evidence.bench_contradicts) withhold(demand);
-  }
+  if (evidence.bench_contradicts) std::ranges::for_each(verdict.demands, withhold);
   add_fleet_risks(verdict.demands, limits);
   if (evidence.uncertainty != nullptr) verdict.not_stated = evidence.uncertainty->not_stated;
   auto [decision, reason] = decided(verdict, evidence.curve);

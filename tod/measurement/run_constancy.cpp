@@ -110,6 +110,11 @@ double limit_of_contrasts(std::span<const PictureNoise> noise, const PictureNois
   return distribution::quantile_above(tail, freedom) * std::hypot(std::sqrt(variance), transfer_systematic_u);
 }
 
+/// Keeps the figure that is larger relative to its limit.
+void keep_larger(std::optional<ConstancyFigure>& worst, const ConstancyFigure& figure) {
+  if (!worst || std::abs(figure.value) * worst->limit > std::abs(worst->value) * figure.limit) worst = figure;
+}
+
 /// The change that is largest relative to its limit.
 template <typename Change>
 std::optional<ConstancyFigure> largest_change(std::span<const PictureNoise> noise, Change change_of) {
@@ -119,9 +124,7 @@ std::optional<ConstancyFigure> largest_change(std::span<const PictureNoise> nois
     if (std::any_of(noise.begin(), noise.begin() + static_cast<std::ptrdiff_t>(i), same)) continue;
     for (std::size_t later = i + 1; later < noise.size(); ++later) {
       if (!same(noise[later])) continue;
-      const std::optional<ConstancyFigure> change = change_of(noise[i], noise[later]);
-      if (change && (!found || std::abs(change->value) * found->limit > std::abs(found->value) * change->limit))
-        found = change;
+      if (const std::optional<ConstancyFigure> change = change_of(noise[i], noise[later])) keep_larger(found, *change);
     }
   }
   return found;
@@ -176,7 +179,7 @@ std::optional<ConstancyFigure> transfer_change(std::span<const ContrastMeasureme
         std::sqrt(variance * (before.of_triangles + after.of_triangles + before.of_shared + after.of_shared));
     const ConstancyFigure figure{after.mean / before.mean - 1,
                                  quantile * std::hypot(of_scatter / before.mean, transfer_systematic_u)};
-    if (!worst || std::abs(figure.value) * worst->limit > std::abs(worst->value) * figure.limit) worst = figure;
+    keep_larger(worst, figure);
   }
   return worst;
 }
@@ -201,7 +204,7 @@ std::optional<ConstancyFigure> presented_change(std::span<const PresentedContras
     const double relative = std::hypot(error, one.measured_error) / std::abs(one.measured);
     const ConstancyFigure figure{one.sum / count / one.measured - 1,
                                  std::hypot(constancy_errors * relative, most_presented_change)};
-    if (!worst || std::abs(figure.value) * worst->limit > std::abs(worst->value) * figure.limit) worst = figure;
+    keep_larger(worst, figure);
   }
   return worst;
 }
@@ -217,22 +220,18 @@ std::optional<ConstancyFigure> correlation_change(std::span<const PictureNoise> 
                         });
 }
 
-std::optional<PictureResidue> judged_residue(const cv::Mat1d& before, std::span<const cv::Mat1w> pictures) {
-  const auto other_size = [&](const cv::Mat1w& picture) { return picture.size() != before.size(); };
-  if (before.empty() || pictures.size() < 8 || std::ranges::any_of(pictures, other_size)) return std::nullopt;
-  cv::Mat1d mean = cv::Mat1d::zeros(before.size());
-  for (const cv::Mat1w& picture : pictures) cv::add(mean, picture, mean, cv::noArray(), CV_64F);
-  mean /= static_cast<double>(pictures.size());
+std::optional<PictureResidue> judged_residue(const cv::Mat1d& before, std::span<const cv::Mat1w> pictures,
+                                             const cv::Mat1d& mean) {
+  if (before.empty() || pictures.size() < 8 || mean.size() != before.size()) return std::nullopt;
   const double noise = median_deviation(pictures, mean);
   const cv::Mat1d direction = direction_to(before, mean, noise);
   const double squares = direction.dot(direction);
   const double error = squares > 0 ? noise * std::sqrt(2 / squares) : INFINITY;
   if (!(error < most_residue_error)) return std::nullopt;
   // The direction has a mean of zero only before small changes are removed from it.
-  const cv::Mat1d level(before.size(), cv::mean(direction)[0]);
+  const cv::Mat1d weights = direction - cv::mean(direction)[0];
   std::vector<double> shares;
-  for (const cv::Mat1w& picture : pictures)
-    shares.push_back(cv::Mat1d(direction - level).dot(cv::Mat1d(picture)) / squares);
+  for (const cv::Mat1w& picture : pictures) shares.push_back(weights.dot(cv::Mat1d(picture)) / squares);
   const std::span<const double> late = std::span<const double>(shares).subspan(shares.size() / 2);
   const double rest = arithmetic_mean(late);
   double scatter = 0;

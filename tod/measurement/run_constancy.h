@@ -112,11 +112,12 @@ inline constexpr double most_correlation_change = 0.2;  ///< five errors of 16 f
                                                             const cv::Mat1d& last, const cv::Mat1d& mean,
                                                             double noise_k);
 /// Returns the same for the judged pictures of an average, which stages may scale from picture to picture. `before`:
-/// mean of the previous average. The share is that of the first picture minus the mean of the second half. Five
-/// standard deviations of the shares of the second half are part of the limit. The noise is the median over the pixels.
-/// Empty as above, and for fewer than eight pictures or pictures of different sizes.
-[[nodiscard]] std::optional<PictureResidue> judged_residue(const cv::Mat1d& before,
-                                                           std::span<const cv::Mat1w> pictures);
+/// mean of the previous average; `mean`: mean of these pictures. The share is that of the first picture minus the mean
+/// of the second half. Five standard deviations of the shares of the second half are part of the limit. The noise is
+/// the median over the pixels. Empty as above, for fewer than eight pictures, and if `before` is empty or has another
+/// size.
+[[nodiscard]] std::optional<PictureResidue> judged_residue(const cv::Mat1d& before, std::span<const cv::Mat1w> pictures,
+                                                           const cv::Mat1d& mean);
 /// Smallest limit of a residue. It exceeds the residue that rounding, or a fixed pattern that drifts between
 /// corrections, can cause.
 inline constexpr double least_residue_share = 0.02;

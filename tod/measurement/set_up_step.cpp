@@ -116,13 +116,14 @@ Result<AveragedPicture> SetUpStep::average(int count, std::stop_token stop, cons
     last = kelvin;
   });
   if (!picture) return picture;
+  const cv::Mat1d judged_mean = mean_of(judged);
   // Grey levels may have another gain in every frame; a contrast on its way differs between the frames.
   if (!grey() && wait_ == ContrastWait::settled && !before_.empty()) {
     keep_residue(picture_residue(before_, first, last, picture->kelvin, noise_of_one_frame(*picture)));
-    keep_residue(judged_residue(judged_before_, judged));
+    keep_residue(judged_residue(judged_before_, judged, judged_mean));
   }
   before_ = picture->kelvin;
-  judged_before_ = mean_of(judged);
+  judged_before_ = judged_mean;
   return picture;
 }
 

@@ -348,7 +348,7 @@ std::optional<PictureResidue> judged_residue_of(const JudgedPictures& change, st
   cv::Mat1d scene(side, side, 5000.0), old(side, side, 5000.0), noise(side, side, 0.0), shown;
   scene(cv::Rect(2, 2, 12, 12)) += change.step;
   old(cv::Rect(18, 18, 12, 12)) += change.step;
-  cv::Mat1d before(side, side, 0.0);
+  cv::Mat1d before(side, side, 0.0), mean(side, side, 0.0);
   std::vector<cv::Mat1w> pictures;
   for (int k = -frames; k < frames; ++k) {
     for (double& pixel : noise)
@@ -359,12 +359,10 @@ std::optional<PictureResidue> judged_residue_of(const JudgedPictures& change, st
     shown = shown.empty() ? now.clone() : cv::Mat1d(change.memory * shown + (1 - change.memory) * now);
     cv::Mat1w counts;
     cv::Mat1d((shown - 5000) * gain + 5000 + noise).convertTo(counts, CV_16U);
-    if (k < 0)
-      before += cv::Mat1d(counts) / frames;
-    else
-      pictures.push_back(counts);
+    (k < 0 ? before : mean) += cv::Mat1d(counts) / frames;
+    if (k >= 0) pictures.push_back(counts);
   }
-  return judged_residue(before, pictures);
+  return judged_residue(before, pictures, mean);
 }
 
 TEST(JudgedResidue, FindsADelayAndAMemoryOfTheStages) {
