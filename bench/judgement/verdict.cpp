@@ -148,7 +148,9 @@ Verdict judge(const JudgementInput& evidence) {
   for (const DemandKindRow& row : demand_kinds()) {
     for (Demand& demand : row.judge(row, evidence)) verdict.demands.push_back(std::move(demand));
   }
-  if (evidence.bench_contradicts) std::ranges::for_each(verdict.demands, withhold);
+  if (evidence.bench_contradicts) {
+    for (Demand& demand : verdict.demands) withhold(demand);
+  }
   add_fleet_risks(verdict.demands, limits);
   if (evidence.uncertainty != nullptr) verdict.not_stated = evidence.uncertainty->not_stated;
   auto [decision, reason] = decided(verdict, evidence.curve);
