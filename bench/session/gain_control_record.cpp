@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "bench/session/measure_row.h"
@@ -18,15 +17,6 @@ std::string level_words(const GainControlMeasure& measure, const GainLevel& leve
                      level.set_delta_t_k, level.lowest, level.highest, measure.unit);
 }
 
-/// Ratio with the intervals of both gains, by the root of the sum of squares.
-Estimate gain_ratio(const GainControlMeasure& measure) {
-  const Estimate large = measure.largest().gain(), small = measure.smallest().gain();
-  const double value = large.value / small.value;
-  const double half = std::abs(value) * std::hypot((large.high - large.low) / (2 * large.value),
-                                                   (small.high - small.low) / (2 * small.value));
-  return {value, value - half, value + half};
-}
-
 void add_gain_lines(MeasureLines& out, const GainControlMeasure& measure) {
   if (measure.settling) {
     const ResponseMeasure& settling = *measure.settling;
@@ -38,7 +28,7 @@ void add_gain_lines(MeasureLines& out, const GainControlMeasure& measure) {
                     found.steps, settling.delta_t_k, settling.change, measure.unit, settling.response.samples,
                     gain_ms_of_s * settling.frame_s, gain_ms_of_s * settling.settling_s)));
   }
-  const Estimate ratio = gain_ratio(measure);
+  const Estimate ratio = measure.ratio();
   out.lines.push_back(measure_line("gain_ratio", ratio.value, ratio.interval(),
                                    level_words(measure, measure.largest()) + "; " +
                                        level_words(measure, measure.smallest()) +
@@ -54,6 +44,7 @@ void gain_level_fields(JsonFields& json, GainLevel& level) {
   json.value("highest", level.highest);
   json.value("contrast", level.contrast);
   json.value("contrast_u", level.contrast_u);
+  json.later("triangles", level.triangles);
 }
 
 void gain_settling_fields(JsonFields& json, ResponseMeasure& settling) {

@@ -382,7 +382,8 @@ class Run {
                     .said_delta_t_k = shown.state.delta_t_k,
                     .surround = median(std::vector<double>(part.begin(), part.end())),
                     .contrast = seen.value,
-                    .contrast_u = seen.standard_error};
+                    .contrast_u = seen.standard_error,
+                    .triangles = seen.triangles};
     cv::minMaxLoc(part, &level.lowest, &level.highest);
     return level;
   }

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "acquisition/base/normal.h"
+#include "acquisition/base/distributions.h"
 
 namespace todbench {
 
@@ -17,7 +17,10 @@ double magnitude_k(const GainLevel& level) {
 }  // namespace
 
 Estimate GainLevel::gain() const {
-  const double value = contrast / said_delta_t_k, half = std::abs(normal_z95 * contrast_u / said_delta_t_k);
+  constexpr double upper_tail = 0.025;
+  const double quantile =
+      distribution::quantile_above(upper_tail, triangles > 1 ? std::optional<double>(triangles - 1) : std::nullopt);
+  const double value = contrast / said_delta_t_k, half = std::abs(quantile * contrast_u / said_delta_t_k);
   return {value, value - half, value + half};
 }
 
@@ -27,6 +30,16 @@ const GainLevel& GainControlMeasure::smallest() const {
 
 const GainLevel& GainControlMeasure::largest() const {
   return *std::ranges::max_element(levels, {}, magnitude_k);
+}
+
+Estimate GainControlMeasure::ratio() const {
+  const Estimate large = largest().gain(), small = smallest().gain();
+  const double value = large.value / small.value;
+  const double of_large = (large.high - large.low) / (2 * std::abs(large.value));
+  const double of_small = (small.high - small.low) / (2 * std::abs(small.value));
+  const bool opposite = (largest().said_delta_t_k > 0) != (smallest().said_delta_t_k > 0);
+  const double half = std::abs(value) * (opposite ? of_large + of_small : std::hypot(of_large, of_small));
+  return {value, value - half, value + half};
 }
 
 }  // namespace todbench

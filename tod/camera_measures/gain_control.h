@@ -18,8 +18,10 @@ struct GainLevel {
   double surround = 0;                           ///< median of the plate
   double lowest = 0, highest = 0;                ///< in the mean picture of the plate
   double contrast = 0, contrast_u = 0;           ///< contrast of the large triangles; u from the scatter over triangles
+  int triangles = 0;                             ///< number of large triangles; 0: unknown
 
-  /// Returns the contrast of the picture divided by that of the target, with the 95 % interval from the triangles.
+  /// Returns the contrast of the picture divided by that of the target, with the 95 % interval from the scatter over
+  /// the triangles (Student's t).
   [[nodiscard]] Estimate gain() const;
 };
 
@@ -33,6 +35,10 @@ struct GainControlMeasure {
   /// Return the levels at the contrasts with the smallest and the largest magnitude. Precondition: there are levels.
   [[nodiscard]] const GainLevel& smallest() const;
   [[nodiscard]] const GainLevel& largest() const;
+  /// Returns the gain at the largest contrast divided by that at the smallest, with the 95 % interval from both gains.
+  /// A fixed pattern adds the same counts to both contrasts. If their signs differ, it raises one gain and lowers the
+  /// other, so the relative half-widths are added; otherwise they are combined as the root of the sum of squares.
+  [[nodiscard]] Estimate ratio() const;
 };
 
 }  // namespace todbench

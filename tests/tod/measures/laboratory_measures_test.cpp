@@ -12,6 +12,7 @@
 
 #include "acquisition/base/rng.h"
 #include "tod/camera_measures/absolute_measure.h"
+#include "tod/camera_measures/gain_control.h"
 #include "tod/camera_measures/timing_measure.h"
 #include "tod/measures/separated_pattern.h"
 
@@ -384,6 +385,49 @@ TEST(Latency, NeedsAStageWithRuns) {
 
   ASSERT_FALSE(found);
   EXPECT_EQ(found.error().code, ErrorCode::invalid_input);
+}
+
+/// Level of a camera of gain 1 whose triangles have a fixed pattern, for example after its correction.
+GainLevel seen_level(double delta_t_k, const std::vector<double>& pattern_k, double noise_k,
+                     const RandomStream& random) {
+  std::vector<double> contrasts;
+  for (std::size_t k = 0; k < pattern_k.size(); ++k)
+    contrasts.push_back(delta_t_k + pattern_k[k] + noise_k * random.normal(k));
+  const double n = static_cast<double>(contrasts.size());
+  double mean = 0, squares = 0;
+  for (const double one : contrasts) mean += one / n;
+  for (const double one : contrasts) squares += (one - mean) * (one - mean);
+  return {.set_delta_t_k = delta_t_k,
+          .said_delta_t_k = delta_t_k,
+          .contrast = mean,
+          .contrast_u = std::sqrt(squares / (n - 1) / n),
+          .triangles = static_cast<int>(n)};
+}
+
+/// Number of `runs` whose interval of the gain ratio contains the truth.
+int gain_ratios_that_hold(double low_k, double high_k, double pattern_k, double noise_k, int runs) {
+  int held = 0;
+  for (int run = 0; run < runs; ++run) {
+    const RandomStream random = RandomStream(5, "gain ratio").sub(static_cast<std::uint64_t>(run));
+    std::vector<double> pattern(4);
+    for (std::size_t k = 0; k < pattern.size(); ++k) pattern[k] = pattern_k * random.normal(k);
+    GainControlMeasure measure{.unit = "K", .frames = 8};
+    measure.levels = {seen_level(low_k, pattern, noise_k, random.sub(1)),
+                      seen_level(high_k, pattern, noise_k, random.sub(2))};
+    const Estimate ratio = measure.ratio();
+    held += ratio.low <= 1 && 1 <= ratio.high ? 1 : 0;
+  }
+  return held;
+}
+
+/// A fixed pattern raises one gain and lowers the other, if the contrasts differ in sign: 0.95 of 4000 runs hold, with
+/// a standard deviation of 0.0034. In all other cases the interval is longer than necessary.
+TEST(GainRatio, HoldsTheTruthWithAFixedPatternAndWithNoise) {
+  constexpr int runs = 4000;
+  EXPECT_NEAR(gain_ratios_that_hold(-2, 4, 0.02, 0, runs) / double{runs}, 0.95, 4 * 0.0034);
+  EXPECT_GT(gain_ratios_that_hold(-2, 4, 0, 0.02, runs) / double{runs}, 0.95 - 4 * 0.0034);
+  EXPECT_GT(gain_ratios_that_hold(2, 4, 0, 0.02, runs) / double{runs}, 0.95 - 4 * 0.0034);
+  EXPECT_GT(gain_ratios_that_hold(2, 4, 0.02, 0.01, runs) / double{runs}, 0.95 - 4 * 0.0034);
 }
 
 }  // namespace
