@@ -9,8 +9,10 @@
 namespace todbench {
 namespace {
 
-/// A rearrangement is detected if undoing it reduces the difference below this fraction.
+/// A rearrangement is detected if undoing it reduces the difference below this fraction, or below 1 minus this many
+/// standard errors of the difference, whichever is lower.
 constexpr double put_right = 0.8;
+constexpr double put_right_errors = 4.5;
 /// A difference up to this multiple of the least one needs no search.
 constexpr double alike = 1.2;
 /// The first pictures are always searched, because the least difference must be learnt.
@@ -22,16 +24,27 @@ constexpr double wanted_samples = 4000;
 /// judged.
 constexpr std::size_t least_pixels = 1000;
 
-/// Mean of |a - b - level| over the rows of `a` shifted by `shift`. `step`: distance of the compared columns.
-double difference(const cv::Mat1w& a, const cv::Mat1w& b, int shift, int step, double level) {
-  double sum = 0;
+/// Mean over pixels of |a - b - level|, and its standard error relative to the mean.
+struct ShiftedDifference {
+  double mean = 0, relative_error = 0;
+};
+
+/// Compares with the rows of `a` shifted by `shift`. `step`: distance of the compared columns.
+ShiftedDifference difference(const cv::Mat1w& a, const cv::Mat1w& b, int shift, int step, double level) {
+  double sum = 0, squares = 0;
   long count = 0;
   for (int y = 0; y < a.rows; ++y) {
     const std::uint16_t* now = a.ptr<std::uint16_t>((y + shift) % a.rows);
     const std::uint16_t* before = b.ptr<std::uint16_t>(y);
-    for (int x = step / 2; x < a.cols; x += step, ++count) sum += std::abs(now[x] - before[x] - level);
+    for (int x = step / 2; x < a.cols; x += step, ++count) {
+      const double change = std::abs(now[x] - before[x] - level);
+      sum += change;
+      squares += change * change;
+    }
   }
-  return count > 0 ? sum / static_cast<double>(count) : 0;
+  if (count == 0 || sum == 0) return {};
+  const auto n = static_cast<double>(count);
+  return {sum / n, std::sqrt(std::max(0.0, squares - sum * sum / n)) / sum};
 }
 
 int step_for(const cv::Mat1w& picture) {
@@ -47,7 +60,7 @@ std::pair<int, double> best_shift(const cv::Mat1w& a, const cv::Mat1w& b, double
   std::pair<int, double> best{0, HUGE_VAL};
   const int step = std::clamp(step_for(a), 1, std::max(1, a.cols / 4));
   for (int shift = least_shift; shift <= a.rows - least_shift; ++shift) {
-    const double seen = difference(a, b, shift, step, level);
+    const double seen = difference(a, b, shift, step, level).mean;
     if (seen < best.second) best = {shift, seen};
   }
   return best;
@@ -91,11 +104,11 @@ std::optional<std::string> MovedPicture::see(const cv::Mat1w& counts) {
   }
   const double level = level_between(counts, reference_);
   const int step = std::clamp(step_for(counts), 1, std::max(1, counts.cols / 4));
-  const double as_it_is = difference(counts, reference_, 0, step, level);
+  const auto [as_it_is, relative_error] = difference(counts, reference_, 0, step, level);
   const bool usual = least_difference_ && as_it_is <= alike * *least_difference_;
   std::optional<std::string> found;
   if (as_it_is > 0 && (!usual || compared_ < first_pictures)) {
-    double least = put_right * as_it_is;
+    double least = std::min(put_right, 1 - put_right_errors * relative_error) * as_it_is;
     const auto propose = [&](double seen, const std::string& words) {
       if (seen >= least) return;
       least = seen;
@@ -106,7 +119,7 @@ std::optional<std::string> MovedPicture::see(const cv::Mat1w& counts) {
     const auto [columns, by_columns] = best_shift(counts.t(), reference_.t(), level);
     propose(by_columns, "it wraps around horizontally, shifted by " + std::to_string(columns) + " px");
     for (const Turned& other : turned(counts))
-      propose(difference(other.picture, reference_, 0, step, level), other.words);
+      propose(difference(other.picture, reference_, 0, step, level).mean, other.words);
   }
   ++compared_;
   if (found) return found;

@@ -72,5 +72,26 @@ TEST(MovedPicture, IsNotSeenInFlatOrStructuredNoiseNorWhenTheLevelDrifts) {
   }
 }
 
+/// Noise of a third of a step changes few pixels, and a row of telemetry changes by thousands of counts.
+TEST(MovedPicture, IsNotSeenInNoiseBelowTheStepOfTheCountsNorInARowOfTelemetry) {
+  for (const bool telemetry : {false, true}) {
+    for (std::uint64_t recording = 0; recording < 10; ++recording) {
+      MovedPicture watch;
+      for (std::uint64_t frame = 0; frame < 30; ++frame) {
+        cv::Mat1w counts = picture(1000 * recording + frame, {160, 120}, telemetry ? 5 : 8, telemetry ? 1 : 0);
+        if (telemetry) {
+          const RandomStream words(recording, "telemetry");
+          for (int x = 0; x < counts.cols; ++x)
+            counts(counts.rows - 1, x) =
+                static_cast<std::uint16_t>(65535 * words.sub(frame).uniform(static_cast<std::uint64_t>(x)));
+        } else {
+          for (std::uint16_t& pixel : counts) pixel = static_cast<std::uint16_t>((pixel + 13) / 40 * 40);
+        }
+        EXPECT_FALSE(watch.see(counts)) << telemetry << ", recording " << recording << ", frame " << frame;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace todbench
