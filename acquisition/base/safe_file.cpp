@@ -123,6 +123,13 @@ Result<int> open_to_read(const std::filesystem::path& file) {
                  S_ISDIR(found.st_mode) ? "it is a folder" : "it is a pipe, a socket or a device");
 }
 
+std::string_view no_file_reason(const std::filesystem::path& file) {
+  std::error_code problem;
+  const auto status = std::filesystem::status(file, problem);
+  if (!std::filesystem::exists(status)) return "no such file";
+  return std::filesystem::is_directory(status) ? "it is a folder" : "it is a pipe, a socket or a device";
+}
+
 int write_all(int descriptor, std::string_view content) {
   while (!content.empty()) {
     const ssize_t written = ::write(descriptor, content.data(), content.size());

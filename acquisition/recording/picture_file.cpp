@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "acquisition/base/npy_header.h"
+#include "acquisition/base/safe_file.h"
 #include "acquisition/core/byte_order.h"
 
 namespace todbench {
@@ -31,7 +32,7 @@ Result<PictureFile> read_picture(const std::filesystem::path& path) {
     return fail(ErrorCode::invalid_input, path.string() + ": " + sentence);
   };
   std::error_code problem;
-  if (!std::filesystem::is_regular_file(path, problem)) return wrong("no such file");
+  if (!std::filesystem::is_regular_file(path, problem)) return wrong(std::string(no_file_reason(path)));
   const std::uintmax_t size = std::filesystem::file_size(path, problem);
   if (problem) return wrong(problem.message());
   if (size == 0) return wrong("the file is empty");

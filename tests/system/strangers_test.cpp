@@ -59,6 +59,9 @@ TEST_F(Strangers, APipeInPlaceOfAFileIsRefusedAndNotWaitedFor) {
   EXPECT_EQ(run({"verify", "m"}).code, 0);
   ASSERT_EQ(::mkfifo(at("pipe.toml").c_str(), 0600), 0);
   EXPECT_EQ(run({"simulate", "./pipe.toml"}).code, 2);
+  const Ended noise = run({"noise", "./pipe.toml"});
+  EXPECT_EQ(noise.code, 2);
+  EXPECT_THAT(noise.err, HasSubstr("it is a pipe, a socket or a device"));
 }
 
 TEST_F(Strangers, EveryOfSixProgramsAddsItsSessionToANewHistory) {
