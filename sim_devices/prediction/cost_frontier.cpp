@@ -89,8 +89,9 @@ void mark_best(std::vector<CostPoint>& points) {
   for (CostPoint& point : points) {
     if (point.paired || !point.measured()) continue;
     point.best = std::ranges::none_of(points, [&](const CostPoint& other) {
-      return !other.paired && other.measured() && *other.wall_s < *point.wall_s &&
-             other.total_percent() < point.total_percent();
+      return !other.paired && other.measured() && *other.wall_s <= *point.wall_s &&
+             other.total_percent() <= point.total_percent() &&
+             (*other.wall_s < *point.wall_s || other.total_percent() < point.total_percent());
     });
   }
 }
