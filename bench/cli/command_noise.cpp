@@ -169,9 +169,7 @@ struct Found {
   RecordedNoise blocks;
   TemporalNoise time;
   bool kelvin = false;
-  double unit_per_count = 1, saturated_share = 0;
-  int counts_per_step = 1;
-  double clipped_share = 0;  ///< of EndValues
+  std::optional<NoiseFault> fault;  ///< the counts contain no noise that could be stated
   int repeated = 0;
   ByteOrderVerdict byte_order = ByteOrderVerdict::as_stated;
 };
@@ -188,29 +186,10 @@ bool correlated(const TemporalNoise& noise) {
   return noise.lag1_correlation && std::abs(*noise.lag1_correlation) > white_enough;
 }
 
-/// The noise is so low that rounding makes it depend on the level between two counts.
-bool too_coarse(const Found& found) {
-  return noise_too_coarse(found.time.successive, found.unit_per_count * found.counts_per_step);
-}
-
-bool clipped(const Found& found) {
-  return noise_clipped(found.saturated_share);
-}
-
-bool clipped_below(const Found& found) {
-  return noise_clipped(found.clipped_share);
-}
-
-/// Whether the counts contain no noise that could be stated.
-bool no_number(const Found& found) {
-  return clipped(found) || too_coarse(found) || clipped_below(found);
-}
-
 std::string_view verdict_of(const Found& found) {
-  if (clipped(found)) return "saturated";
+  if (found.fault) return found.fault->verdict;
   if (moved(found.blocks)) return "scene_moved";
-  if (too_coarse(found)) return "too_coarse";
-  if (clipped_below(found)) return "saturated";
+  if (found.time.changes) return "unsteady";
   return correlated(found.time) ? "correlated" : "ok";
 }
 
@@ -261,12 +240,12 @@ Json noise_json(const Found& found, const std::vector<NoiseAcuity>& points, cons
           {"frames_repeated", found.repeated},
           {"usable_share", noise.usable_share},
           {"pixels_left_out", pixels_left_out(found.time)},
-          {"temporal_noise", no_number(found) ? Json() : json_number(found.time.successive)},
+          {"temporal_noise", found.fault ? Json() : json_number(found.time.successive)},
           {"lag1_correlation", json_number(found.time.lag1_correlation)},
-          {"structure_function", structure_json(found.time, !no_number(found))},
+          {"structure_function", structure_json(found.time, !found.fault)},
           {"whole_to_successive", json_number(found.time.whole_to_successive)},
-          {"block_noise", no_number(found) ? Json() : json_number(noise.temporal_noise)},
-          {"components", components_json(noise.components, !no_number(found))},
+          {"block_noise", found.fault ? Json() : json_number(noise.temporal_noise)},
+          {"components", components_json(noise.components, !found.fault)},
           {"correlation_x", json_number(noise.correlation_x)},
           {"correlation_y", json_number(noise.correlation_y)},
           {"observer", arguments.observer},
@@ -278,7 +257,7 @@ Json noise_json(const Found& found, const std::vector<NoiseAcuity>& points, cons
 
 void print_time(Console& console, const Found& found, const std::string& unit) {
   const TemporalNoise& time = found.time;
-  const auto noise = no_number(found) ? std::nullopt : std::optional(time.successive);
+  const auto noise = found.fault ? std::nullopt : std::optional(time.successive);
   console.text("temporal noise " + fixed(noise, 4) + " " + unit + " (from differences of successive frames) over " +
                fixed(100 * time.usable_share, 1) + " % of the pixels; lag-1 correlation " +
                fixed(time.lag1_correlation, 3));
@@ -297,7 +276,7 @@ void print_components(Console& console, const Found& found) {
   const auto& c = noise.components;
   const std::string unit = found.kelvin ? "K" : "counts";
   print_time(console, found, unit);
-  if (no_number(found)) return;
+  if (found.fault) return;
   console.text("noise within blocks " + fixed(noise.temporal_noise, 4) + " " + unit + " over " +
                fixed(100 * noise.usable_share, 1) + " % of the pixels; correlation of adjacent pixels: " +
                fixed(noise.correlation_x, 3) + " in a row, " + fixed(noise.correlation_y, 3) + " in a column");
@@ -357,20 +336,22 @@ int run_noise(Console& console, NoiseArguments arguments, const Program& program
   const double saturated_share = cv::mean(frames->saturated, time->usable)[0] / count;
   EndValues ends;
   for (const TimedPicture& picture : frames->pictures) ends.add(picture.picture, time->usable);
-  const Found found{*std::move(blocks),     *std::move(time), frames->kelvin,
-                    frames->unit_per_count, saturated_share,  frames->step.counts_per_step(),
-                    ends.clipped_share(),   frames->repeated, frames->byte_order};
+  auto fault =
+      noise_fault({saturated_share, frames->unit_per_count, frames->step.counts_per_step(), ends.clipped_share()},
+                  time->successive);
+  const Found found{*std::move(blocks), *std::move(time), frames->kelvin,
+                    std::move(fault),   frames->repeated, frames->byte_order};
   std::vector<NoiseAcuity> points;
-  if (clipped(found)) {
-    console.note(clipped_sentence(found.saturated_share));
-  } else if (too_coarse(found)) {
-    console.note(too_coarse_sentence(found.counts_per_step));
-  } else if (clipped_below(found)) {
-    console.note(clipped_below_sentence(found.clipped_share));
+  if (found.fault) {
+    console.note(found.fault->message);
   } else if (moved(found.blocks)) {
     // Components and acuity would be those of the moving scene.
     console.note(
         "adjacent pixels change together: the scene or the camera moved, so this is not the noise of the camera");
+  } else if (found.time.changes) {
+    console.note(
+        "the noise changes within the recording: its first and its second half differ by more than 7 %, so this is not "
+        "the noise of the camera at one setting");
   } else {
     if (correlated(found.time)) console.note(memory_sentence(found.time));
     TemplateObserver observer(*spec, triangle_alternatives());

@@ -33,30 +33,15 @@ struct WholeRecording {
   EndValues ends;
 };
 
-bool clipped(const WholeRecording& whole) {
-  return noise_clipped(whole.saturated_share);
-}
-
-bool too_coarse(const WholeRecording& whole) {
+std::optional<NoiseFault> fault_of(const WholeRecording& whole) {
   const double variance = estimate_of(whole.table, NoiseComponent::tvh).variance;
-  return noise_too_coarse(std::sqrt(std::max(0.0, variance)), whole.unit_per_count * whole.step.counts_per_step());
+  return noise_fault(
+      {whole.saturated_share, whole.unit_per_count, whole.step.counts_per_step(), whole.ends.clipped_share()},
+      std::sqrt(std::max(0.0, variance)));
 }
 
-bool clipped_below(const WholeRecording& whole) {
-  return noise_clipped(whole.ends.clipped_share());
-}
-
-/// Returns the reason why no noise is stated; empty if there is none.
-std::string reason_of(const WholeRecording& whole) {
-  if (clipped(whole)) return clipped_sentence(whole.saturated_share);
-  if (too_coarse(whole)) return too_coarse_sentence(whole.step.counts_per_step());
-  return clipped_below(whole) ? clipped_below_sentence(whole.ends.clipped_share()) : "";
-}
-
-std::string_view verdict_of(const WholeRecording& whole) {
-  if (clipped(whole)) return "saturated";
-  if (too_coarse(whole)) return "too_coarse";
-  if (clipped_below(whole)) return "saturated";
+std::string_view verdict_of(const WholeRecording& whole, const std::optional<NoiseFault>& fault) {
+  if (fault) return fault->verdict;
   return std::abs(whole.memory) > components_white_enough ? "correlated" : "ok";
 }
 
@@ -141,7 +126,8 @@ Result<WholeRecording> whole_recording(Console& console, const std::string& id, 
 
 Json components_json(const WholeRecording& whole, const std::string& recording) {
   Json variances, intervals, deviations, squares, freedom, absent;
-  const bool stated = reason_of(whole).empty();
+  const auto fault = fault_of(whole);
+  const bool stated = !fault;
   for (const NoiseComponent component : noise_components) {
     const ComponentEstimate found = estimate_of(whole.table, component);
     const std::string name(to_string(component));
@@ -161,7 +147,7 @@ Json components_json(const WholeRecording& whole, const std::string& recording) 
           {"byte_order", to_string(whole.byte_order)},
           {"frames_left_out", whole.left_out},
           {"frames_repeated", whole.repeated},
-          {"verdict", verdict_of(whole)},
+          {"verdict", verdict_of(whole, fault)},
           {"variances", variances},
           {"intervals", intervals},
           {"standard_deviations", deviations},
@@ -202,9 +188,9 @@ int run_noise_components(Console& console, const std::string& recording, AcrossC
                  ". The components assume independent frames, so tvh is too " +
                  (whole->memory > 0 ? "small and vh too large" : "large and vh too small"));
   }
-  const std::string reason = reason_of(*whole);
-  const bool stated = reason.empty();
-  if (!stated) console.note(reason);
+  const auto fault = fault_of(*whole);
+  const bool stated = !fault;
+  if (fault) console.note(fault->message);
   if (console.json())
     console.object(components_json(*whole, recording));
   else if (stated)

@@ -20,14 +20,6 @@ cv::Mat1b saturated_pixels(const Frame& frame) {
   return ends & 1;
 }
 
-bool noise_clipped(double saturated_share) {
-  return saturated_share > IntegrityOptions{}.max_saturated_share;
-}
-
-bool noise_too_coarse(double noise, double unit_per_step) {
-  return noise < least_measurable_noise_counts * unit_per_step;
-}
-
 void EndValues::End::add(float seen) {
   if (pixels > 0 && seen == value) {
     ++pixels;
@@ -61,21 +53,28 @@ double EndValues::clipped_share() const {
   return most;
 }
 
-std::string clipped_sentence(double saturated_share) {
-  return fixed(100 * saturated_share, 1) +
-         " % of the pixels are saturated (lowest or highest count): their noise is clipped, so no noise is reported";
-}
-
-std::string clipped_below_sentence(double clipped_share) {
-  return fixed(100 * clipped_share, 1) +
-         " % of the pixels have the highest or the lowest value of the recording, more than the value next to it has: "
-         "their noise is clipped below full scale, so no noise is reported";
-}
-
-std::string too_coarse_sentence(int counts_per_step) {
-  if (counts_per_step <= 1) return "the noise is below half a count: the counts are too coarse to measure it";
-  return "the counts change in steps of " + std::to_string(counts_per_step) +
-         ", and the noise is below half a step: the steps are too coarse to measure it";
+std::optional<NoiseFault> noise_fault(const NoiseLimits& limits, double noise) {
+  const double most_clipped = IntegrityOptions{}.max_saturated_share;
+  if (limits.saturated_share > most_clipped) {
+    return NoiseFault{"saturated",
+                      fixed(100 * limits.saturated_share, 1) +
+                          " % of the pixels are saturated (lowest or highest count): their noise is clipped, so no "
+                          "noise is reported"};
+  }
+  if (noise < least_measurable_noise_counts * limits.unit_per_count * limits.counts_per_step) {
+    return NoiseFault{"too_coarse",
+                      limits.counts_per_step <= 1
+                          ? "the noise is below half a count: the counts are too coarse to measure it"
+                          : "the counts change in steps of " + std::to_string(limits.counts_per_step) +
+                                ", and the noise is below half a step: the steps are too coarse to measure it"};
+  }
+  if (limits.clipped_share > most_clipped) {
+    return NoiseFault{"saturated",
+                      fixed(100 * limits.clipped_share, 1) +
+                          " % of the pixels have the highest or the lowest value of the recording, more than the value "
+                          "next to it has: their noise is clipped below full scale, so no noise is reported"};
+  }
+  return std::nullopt;
 }
 
 std::string frozen_sentence(int repeated) {

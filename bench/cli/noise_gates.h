@@ -3,7 +3,9 @@
 #pragma once
 
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
+#include <string_view>
 
 #include "acquisition/base/result.h"
 #include "acquisition/core/frame.h"
@@ -14,12 +16,6 @@ namespace todbench {
 [[nodiscard]] double kelvin_per_count(const Frame& frame, const RadiometricScale& scale);
 /// Returns 1 for each pixel with the lowest or highest possible count, otherwise 0.
 [[nodiscard]] cv::Mat1b saturated_pixels(const Frame& frame);
-
-/// Returns whether the share of saturated pixels is so large that the noise is clipped.
-[[nodiscard]] bool noise_clipped(double saturated_share);
-/// Returns whether the noise is so low that, after rounding to steps of the counts, it depends on the position of the
-/// level between two steps. `unit_per_step`: size of a step in the unit of the noise; 0: unknown.
-[[nodiscard]] bool noise_too_coarse(double noise, double unit_per_step);
 
 /// Counts the pixels at the highest and the lowest value of a recording. Noise spreads the values of a flat scene, so
 /// that fewer pixels have an end value than the value next to it. A device that clips below full scale collects pixels
@@ -40,12 +36,23 @@ class EndValues {
   End high_, low_;  ///< of the values, and of the values with the other sign
   double pixels_ = 0;
 };
-/// Returns the message about clipped noise.
-[[nodiscard]] std::string clipped_sentence(double saturated_share);
-/// Returns the message about noise that is clipped below full scale.
-[[nodiscard]] std::string clipped_below_sentence(double clipped_share);
-/// Returns the message about noise below half a step. `counts_per_step`: of CountStep.
-[[nodiscard]] std::string too_coarse_sentence(int counts_per_step);
+
+/// Properties of a recording that limit which noise it can show.
+struct NoiseLimits {
+  double saturated_share = 0;  ///< of the pixels of all frames, see saturated_pixels()
+  double unit_per_count = 1;   ///< in the unit of the noise; 0: unknown
+  int counts_per_step = 1;     ///< of CountStep
+  double clipped_share = 0;    ///< of EndValues
+};
+/// Reason why a recording does not show the noise of its camera.
+struct NoiseFault {
+  std::string_view verdict;  ///< "saturated" or "too_coarse"
+  std::string message;
+};
+/// Returns the reason why a noise cannot be stated: too many saturated pixels, noise below half a step of the counts
+/// (after rounding it depends on the position of the level between two steps), or pixels that are clipped below full
+/// scale. Empty if there is none.
+[[nodiscard]] std::optional<NoiseFault> noise_fault(const NoiseLimits& limits, double noise);
 /// Returns a phrase with the number of frames that repeat the previous frame bit for bit; empty if no frame does.
 [[nodiscard]] std::string frozen_sentence(int repeated);
 /// Returns the error `invalid_input` for a recording with fewer than two different frames.

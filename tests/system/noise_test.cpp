@@ -384,6 +384,11 @@ TEST(NoiseCommand, SaysThatTheNoiseOfAComponentsCubeChanges) {
           .string();
   expect_refused(todbench({"noise", rising + "?width=80&height=60", "--components-only"}), 2,
                  "the noise changes within the recording");
+  const Ended plain = todbench({"noise", rising + "?width=80&height=60", "--json"});
+  EXPECT_EQ(plain.code, 3) << plain.err;
+  EXPECT_THAT(plain.err, HasSubstr("the noise changes within the recording"));
+  EXPECT_EQ(one_object(plain)["verdict"], "unsteady");
+  EXPECT_EQ(one_object(plain)["points"].size(), 0u);
 }
 
 TEST(NoiseCommand, WithholdsTheAcuityWhereTheSceneMoved) {

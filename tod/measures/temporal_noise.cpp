@@ -7,6 +7,7 @@
 #include <numeric>
 #include <utility>
 
+#include "acquisition/base/distributions.h"
 #include "tod/measures/medians.h"
 
 namespace todbench {
@@ -63,6 +64,24 @@ AtLag at_lag(std::span<const TimedPicture> pictures, const std::vector<Pair>& pa
   }
   const auto count = static_cast<double>(pairs.size());
   return {out.all / count, out.pixels / count};
+}
+
+/// Whether the mean squares at the shortest lag differ between the first and the second half of the pairs.
+bool halves_differ(std::span<const TimedPicture> pictures, const std::vector<Pair>& pairs, const cv::Mat1b& usable) {
+  constexpr std::size_t least_pairs = 8;
+  constexpr double least_ratio = 1.15, by_chance = 1e-9;
+  if (pairs.size() < least_pairs) return false;
+  const auto half = static_cast<std::ptrdiff_t>(pairs.size() / 2);
+  const double before = at_lag(pictures, {pairs.begin(), pairs.begin() + half}, usable).pixels;
+  const double after = at_lag(pictures, {pairs.end() - half, pairs.end()}, usable).pixels;
+  if (!(before > 0 && after > 0)) return before != after;
+  // A line is one sample. Differences that share a frame have a correlation of -1/2, which raises the variance of their
+  // mean square by 3/2.
+  const double lines = std::max(1, std::min(usable.rows, usable.cols) - 1);
+  const double freedom = lines * static_cast<double>(half) / 1.5;
+  const double ratio = std::max(before, after) / std::min(before, after);
+  return ratio > least_ratio &&
+         cdf(distribution::complement(distribution::FisherF(freedom, freedom), ratio)) < by_chance;
 }
 
 /// Pixels whose noise is above twice the median pixel's at a short or at a longer lag show a moving scene; one that
@@ -145,6 +164,7 @@ Result<TemporalNoise> temporal_noise(std::span<const TimedPicture> pictures) {
     noise.structure.push_back(std::sqrt(at[lag].all));
   }
   noise.successive = noise.structure.front();
+  noise.changes = halves_differ(pictures, pairs.at(base), noise.usable);
   if (!(noise.successive > 0))
     return fail(ErrorCode::invalid_input, "there is no noise: successive frames are identical");
   if (at[base].pixels > 0) {

@@ -34,6 +34,10 @@ struct TemporalNoise {
   double whole_to_successive = 1;
   /// Lag-1 correlation of a pixel for noise of first order, without changes of whole frames; empty: too few frames.
   std::optional<double> lag1_correlation;
+  /// Whether the noise differs between the first and the second half of the successive frames: their mean squares,
+  /// without changes of whole frames, have a ratio above 1.15 (7 % of the noise), which chance exceeds in less than
+  /// 1e-9 of all recordings, even if whole rows or columns cause the noise. False for fewer than eight pairs of frames.
+  bool changes = false;
   /// 0 for a pixel that never changes, or where the scene moved (more than twice the median pixel's noise).
   cv::Mat1b usable;
   double usable_share = 1;  ///< share of the pixels

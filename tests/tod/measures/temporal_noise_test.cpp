@@ -103,6 +103,36 @@ TEST(TemporalNoise, DoesNotCompareAcrossACorrection) {
   for (const double value : noise->structure) EXPECT_NEAR(value, 2, 2 * 4 * error_of(side * side * 6.0));
 }
 
+/// Pictures whose noise is larger by `factor` in the second half.
+std::vector<TimedPicture> halves(int frames, double factor, bool whole_rows, std::uint64_t seed) {
+  const RandomStream stream(seed, "halves");
+  std::vector<TimedPicture> out;
+  for (int k = 0; k < frames; ++k) {
+    cv::Mat1f picture(side, side);
+    stream.sub(static_cast<std::uint64_t>(k)).fill_normal(std::span(picture.ptr<float>(), picture.total()));
+    if (whole_rows) cv::repeat(cv::Mat1f(picture.col(0).clone()), 1, side, picture);
+    out.push_back({cv::Mat1f(picture * (k < frames / 2 ? 1 : factor)), static_cast<std::uint64_t>(k), 0});
+  }
+  return out;
+}
+
+TEST(TemporalNoise, SaysThatItChangesBetweenTheHalves) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    EXPECT_TRUE(temporal_noise(halves(64, 1.3, false, seed))->changes) << seed;
+    EXPECT_TRUE(temporal_noise(halves(16, 2, true, seed))->changes) << seed;
+    EXPECT_TRUE(temporal_noise(halves(16, 0.5, false, seed))->changes) << seed;
+  }
+}
+
+TEST(TemporalNoise, DoesNotSayThatConstantNoiseChanges) {
+  for (std::uint64_t seed = 0; seed < 500; ++seed) {
+    const int frames = seed % 2 == 0 ? 10 : 64;
+    EXPECT_FALSE(temporal_noise(halves(frames, 1, false, seed))->changes) << seed;
+    EXPECT_FALSE(temporal_noise(halves(frames, 1, true, seed))->changes) << seed;
+  }
+  for (const double rho : {0.5, 0.9}) EXPECT_FALSE(temporal_noise(sequence(200, rho))->changes) << rho;
+}
+
 TEST(TemporalNoise, LeavesOutPixelsThatSeeSceneOrNeverChange) {
   auto pictures = sequence(100, 0);
   for (auto& p : pictures) {
