@@ -182,9 +182,28 @@ cv::Mat1d as_numbers(const cv::Mat1w& counts) {
   return out;
 }
 
-cv::Mat1w with_gain(cv::Mat1w counts, const PlateScene& scene) {
+cv::Mat1w times(const cv::Mat1w& counts, double gain) {
   constexpr double scene_counts = 4500;
-  return is_turned(scene) ? in_counts((as_numbers(counts) - scene_counts) * 1.1 + scene_counts) : counts;
+  return in_counts((as_numbers(counts) - scene_counts) * gain + scene_counts);
+}
+
+cv::Mat1w with_gain(cv::Mat1w counts, const PlateScene& scene) {
+  return is_turned(scene) ? times(counts, 1.1) : counts;
+}
+
+/// 1.15 times the contrast from the first movement of the stage on that follows a change of contrast or mounting: the
+/// contrast is measured before it, the answers are given after it.
+SentCounts with_more_contrast_in_presentations() {
+  return [delta_t_k = 0.0, turned = false, place = cv::Point2d(), moved = false](cv::Mat1w counts,
+                                                                                 const PlateScene& scene) mutable {
+    if (std::abs(scene.delta_t_k - delta_t_k) > 0.1 || is_turned(scene) != turned) {
+      moved = false;
+    } else {
+      moved = moved || scene.shift_mm != place;
+    }
+    delta_t_k = scene.delta_t_k, turned = is_turned(scene), place = scene.shift_mm;
+    return moved ? times(counts, 1.15) : counts;
+  };
 }
 
 /// 0.8 K, where the sensor has 0.07.
@@ -252,6 +271,10 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Lie{"that_was_knocked", camera(knocked()), 6, {"the picture moved by (+2.0"}},
         Lie{"of_another_gain", camera(with_gain), 3, {"transfer_change"}},
+        Lie{"with_more_contrast_in_presentations",
+            camera(with_more_contrast_in_presentations()),
+            3,
+            {"transfer_change"}},
         Lie{"with_more_noise", camera(with_noise()), 3, {"noise_change"}},
         Lie{"with_a_filter_over_frames", camera(with_filter()), 3, {"noise_change", "correlation_change"}},
         Lie{"whose_pictures_come_late",
