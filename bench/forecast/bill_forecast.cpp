@@ -31,9 +31,9 @@ void add_rows(AccuracyBill& bill, const BenchTime& time, double frame_rate_hz,
     const auto found = time.presentation_frames.find(contrast.delta_t_k);
     const std::uint64_t frames = found != time.presentation_frames.end() ? found->second : 0;
     bill.rows.push_back({presentations_part(contrast.delta_t_k), seconds(frames),
-                         contrast.uncertainty_percent
-                             ? fmt::format("S75 to ± {:.2g} % (95 %) or better", *contrast.uncertainty_percent)
-                             : "no interval of S75"});
+                         contrast.uncertainty_percent ? fmt::format("S75 to ± {} % (95 %) or better",
+                                                                    significant(*contrast.uncertainty_percent, 2))
+                                                      : "no interval of S75"});
   }
   if (!time.measures.empty()) {
     std::vector<std::string> measures;
@@ -159,8 +159,8 @@ Result<AccuracyBill> bill_forecast(const Plan& asked, const ExperimentInputs& in
   for (std::size_t i = 0; i < floors.size(); ++i) {
     if (!(floors[i] > 0)) continue;
     bill.sentences.push_back(
-        fmt::format("At {} K the stated rows of the budget make ± {:.2g} %, which no presentation reduces.",
-                    number_text(prediction.contrasts[i].delta_t_k), 100 * std::expm1(floors[i])));
+        fmt::format("At {} K the stated rows of the budget make ± {} %, which no presentation reduces.",
+                    number_text(prediction.contrasts[i].delta_t_k), significant(100 * std::expm1(floors[i]), 2)));
   }
   TODBENCH_TRY_VOID(add_least(bill, plan, inputs, time, prediction, floors));
   for (std::string& sentence : left_out_sentences(inputs.effects)) bill.sentences.push_back(std::move(sentence));

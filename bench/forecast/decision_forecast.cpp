@@ -15,6 +15,7 @@
 #include "bench/forecast/limit_forecast.h"
 #include "bench/forecast/ramp_advice.h"
 #include "bench/plan/plan_options.h"
+#include "bench/report/number_format.h"
 #include "bench/text/text.h"
 
 namespace todbench {
@@ -304,10 +305,10 @@ std::string open_by_budget(const Plan& plan, const std::vector<ContrastPredictio
       if (!same_contrast(limit.delta_t_k, contrast.delta_t_k)) continue;
       const double over = -std::log(*contrast.s75_mrad * limit.least_acuity_per_mrad);
       if (1 - decision_chances(over, *rows_alone, plan.limits).inconclusive >= probability) continue;
-      open.push_back(fmt::format(
-          "at {} K the acuity is {:.2g} % from its limit, and the stated rows of the budget make ± {:.2g} %",
-          number_text(contrast.delta_t_k), percent_of_ln(std::abs(over)),
-          percent_of_ln(rows_alone->stated.half_width(upper_tail))));
+      open.push_back(
+          fmt::format("at {} K the acuity is {} % from its limit, and the stated rows of the budget make ± {} %",
+                      number_text(contrast.delta_t_k), significant(percent_of_ln(std::abs(over)), 2),
+                      significant(percent_of_ln(rows_alone->stated.half_width(upper_tail)), 2)));
     }
   }
   return open.empty() ? "" : fmt::format("{}, which no presentation reduces", fmt::join(open, "; "));
@@ -319,18 +320,18 @@ std::string in_words(const DecisionForecast& forecast) {
   const std::string of_contrast =
       forecast.contrast_frames
           ? fmt::format(
-                ". The measured contrast alone makes ± {:.2g} %, which no presentation reduces; with {} frames of "
+                ". The measured contrast alone makes ± {} %, which no presentation reduces; with {} frames of "
                 "the contrast ([measurement] contrast_frames) presentations decide",
-                forecast.contrast_percent, *forecast.contrast_frames)
+                significant(forecast.contrast_percent, 2), *forecast.contrast_frames)
           : "";
   if (forecast.rows.empty())
     return text + "the plan states no rows of a budget" +
            (of_contrast.empty() ? ", so that every further presentation narrows the interval" : of_contrast);
   text += fmt::format(
-      "the stated rows of the budget make ± {:.2g} % (95 %), of which {} alone makes ± {:.2g} %. The smallest "
-      "half-width of the trials that matters is {:.2g} %: below it the deciding interval shrinks by less than 5 %",
-      forecast.floor_percent, forecast.rows.front().name, forecast.rows.front().half_width_percent,
-      forecast.smallest_half_width_percent);
+      "the stated rows of the budget make ± {} % (95 %), of which {} alone makes ± {} %. The smallest "
+      "half-width of the trials that matters is {} %: below it the deciding interval shrinks by less than 5 %",
+      significant(forecast.floor_percent, 2), forecast.rows.front().name,
+      significant(forecast.rows.front().half_width_percent, 2), significant(forecast.smallest_half_width_percent, 2));
   text += forecast.enough_bench_s
               ? fmt::format(". {:.0f} s of bench time are enough for it; more frames hardly shorten the interval",
                             *forecast.enough_bench_s)

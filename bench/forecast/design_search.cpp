@@ -18,6 +18,7 @@
 #include "bench/forecast/ramp_advice.h"
 #include "bench/plan/plan_options.h"
 #include "bench/plan/run_checks.h"
+#include "bench/report/number_format.h"
 #include "bench/text/text.h"
 #include "tod/presentation/largest_contrast.h"
 #include "tod/schedule/even_phases.h"
@@ -368,7 +369,7 @@ std::string in_words(const RampDesign& ramp, const PricedDesign& best) {
   const SchedulePlan& schedule = ramp.design.plan.schedule;
   std::vector<std::string> half_widths;
   for (const ContrastPrediction& contrast : ramp.design.contrasts)
-    half_widths.push_back(contrast.uncertainty_percent ? fmt::format("{:.2g}", *contrast.uncertainty_percent) : "no");
+    half_widths.push_back(contrast.uncertainty_percent ? significant(*contrast.uncertainty_percent, 2) : "no");
   std::string text = fmt::format(
       "a ramp from {:g} to {:g} K at {:.3g} K/s ({} contrast lag of {:g} s allows up to {:.3g} K/s) takes {:.0f} s "
       "with half-widths of {} %",
@@ -400,12 +401,12 @@ Error not_found(const Plan& plan, const DesignRequest& request, double half_widt
                                     : fmt::format("no design has a half-width of {:.3g} %", half_width_percent);
   const auto& margin = plan.limits.equivalence_margin_percent;
   if (request.decide && margin)
-    text += fmt::format(" and has half-widths of {:.2g} % or less for the equivalence margin of {:g} %",
-                        most_percent(plan.limits), *margin);
+    text += fmt::format(" and has half-widths of {} % or less for the equivalence margin of {:g} %",
+                        significant(most_percent(plan.limits), 2), *margin);
   if (!by_budget.empty()) text += ": " + by_budget;
   if (search.least_percent)
-    text +=
-        fmt::format("{} trials reach {:.2g} % at best", by_budget.empty() ? ": the" : ". The", *search.least_percent);
+    text += fmt::format("{} trials reach {} % at best", by_budget.empty() ? ": the" : ". The",
+                        significant(*search.least_percent, 2));
   return Error{ErrorCode::invalid_input, text + ". `todbench plan --decide` shows each limit"};
 }
 
@@ -547,8 +548,9 @@ std::vector<std::string> in_words(const BestDesign& found) {
         "the set-ups have unequal shares of the information and count as fewer than five: the intervals come from "
         "presentations and places. They are safe, and longer than those of set-ups");
   if (found.equivalence_half_width_percent)
-    out.push_back(fmt::format("to compare camera and twin within {:g} %, every half-width is at most {:.2g} %",
-                              *best.plan.limits.equivalence_margin_percent, *found.equivalence_half_width_percent));
+    out.push_back(fmt::format("to compare camera and twin within {:g} %, every half-width is at most {} %",
+                              *best.plan.limits.equivalence_margin_percent,
+                              significant(*found.equivalence_half_width_percent, 2)));
   for (const double delta_t_k : found.dropped_contrasts_k)
     out.push_back("the contrast of " + number_text(delta_t_k) + " K is left out, because no limit names it");
   return out;

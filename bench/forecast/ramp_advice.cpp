@@ -11,6 +11,7 @@
 #include "bench/forecast/precision_frontier.h"
 #include "bench/forecast/prediction.h"
 #include "bench/plan/plan_options.h"
+#include "bench/report/number_format.h"
 
 namespace todbench {
 namespace {
@@ -27,7 +28,8 @@ Result<ContrastWay> way_of(const Plan& asked, const ExperimentInputs& inputs) {
 /// "703 s (half-width of at most 1.3 %)".
 std::string text_of(const ContrastWay& way) {
   return fmt::format("{:.0f} s", way.bench_s) +
-         (way.half_width_percent ? fmt::format(" (half-width of at most {:.2g} %)", *way.half_width_percent) : "");
+         (way.half_width_percent ? fmt::format(" (half-width of at most {} %)", significant(*way.half_width_percent, 2))
+                                 : "");
 }
 
 }  // namespace
@@ -69,13 +71,13 @@ std::string ramp_advice(const Plan& plan, const ExperimentInputs& inputs) {
   if (!too_fast && !slow) return "";
   const bool timed = ways.ramp.bench_s > 0;
   std::string text =
-      too_fast
-          ? fmt::format(
-                "a contrast lag of {:g} s at {:g} K/s changes the contrast between large and small "
-                "triangles by {:.2g} %; up to {:.3g} K/s it stays below {:.1f} %",
-                ways.lag_s, ways.rate_k_per_s, 100 * allowed_change * ways.rate_k_per_s / ways.largest_rate_k_per_s,
-                ways.largest_rate_k_per_s, 100 * allowed_change)
-          : fmt::format("the ramp at {:g} K/s takes {} on the bench", ways.rate_k_per_s, text_of(ways.ramp));
+      too_fast ? fmt::format(
+                     "a contrast lag of {:g} s at {:g} K/s changes the contrast between large and small "
+                     "triangles by {} %; up to {:.3g} K/s it stays below {:.1f} %",
+                     ways.lag_s, ways.rate_k_per_s,
+                     significant(100 * allowed_change * ways.rate_k_per_s / ways.largest_rate_k_per_s, 2),
+                     ways.largest_rate_k_per_s, 100 * allowed_change)
+               : fmt::format("the ramp at {:g} K/s takes {} on the bench", ways.rate_k_per_s, text_of(ways.ramp));
   if (too_fast && timed) text += ", and the ramp takes " + text_of(*ways.at_largest) + " on the bench";
   constexpr double another_rate = 1.01;
   if (!too_fast && ways.largest_rate_k_per_s > another_rate * ways.rate_k_per_s && ways.at_largest)
