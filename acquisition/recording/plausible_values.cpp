@@ -65,8 +65,10 @@ std::string counts_above(const cv::Mat1w& counts, int bits, bool are_signed) {
 }
 
 std::string unit_hint(const KnownValues& known) {
-  if (known.unit == ValueUnit::kelvin) return "state unit=celsius if the values are degrees Celsius";
-  if (known.unit == ValueUnit::celsius) return "state unit=kelvin if the values are kelvin";
+  if (known.unit == ValueUnit::kelvin)
+    return "state unit=celsius if the values are degrees Celsius, or unit=counts if they are counts";
+  if (known.unit == ValueUnit::celsius)
+    return "state unit=kelvin if the values are kelvin, or unit=counts if they are counts";
   return known.counts_are_signed ? "check kelvin_per_count and offset_k, the temperature of the value 0 in kelvin"
                                  : "check kelvin_per_count, offset_k, in kelvin, and the sign of the values";
 }

@@ -25,7 +25,7 @@ Result<cv::Mat1d> mean_kelvin(const std::string& file, int frames) {
   if (!recording.info.scale.calibrated())
     return fail(ErrorCode::calibration,
                 "the file has counts without temperatures; state their scale behind the name, for example "
-                "?kelvin_per_count=0.01&offset_k=0, or ?unit=kelvin");
+                "?kelvin_per_count=0.01&offset_k=0");
   const auto source = recorded_source(std::move(recording));
   if (auto started = source->start(); !started) return tl::unexpected(started.error());
   InputGate gate;
