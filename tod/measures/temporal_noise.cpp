@@ -66,20 +66,37 @@ AtLag at_lag(std::span<const TimedPicture> pictures, const std::vector<Pair>& pa
   return {out.all / count, out.pixels / count};
 }
 
+/// Mean over pairs of frames and its squared standard error from the scatter between them.
+struct OverPairs {
+  double mean = 0, squared_error = 0;
+};
+
+OverPairs over_pairs(std::span<const double> of_pair) {
+  const auto count = static_cast<double>(of_pair.size());
+  const double mean = std::accumulate(of_pair.begin(), of_pair.end(), 0.0) / count;
+  double squares = 0;
+  for (const double one : of_pair) squares += (one - mean) * (one - mean);
+  return {mean, squares / (count - 1) / count};
+}
+
 /// Whether the mean squares at the shortest lag differ between the first and the second half of the pairs.
 bool halves_differ(std::span<const TimedPicture> pictures, const std::vector<Pair>& pairs, const cv::Mat1b& usable) {
   constexpr std::size_t least_pairs = 8;
-  constexpr double least_ratio = 1.15, by_chance = 1e-9;
+  constexpr double least_ratio = 1.15, by_chance = 1e-9, standard_errors = 5;
   if (pairs.size() < least_pairs) return false;
-  const auto half = static_cast<std::ptrdiff_t>(pairs.size() / 2);
-  const double before = at_lag(pictures, {pairs.begin(), pairs.begin() + half}, usable).pixels;
-  const double after = at_lag(pictures, {pairs.end() - half, pairs.end()}, usable).pixels;
-  if (!(before > 0 && after > 0)) return before != after;
+  std::vector<double> of_pair;
+  for (const Pair& pair : pairs) of_pair.push_back(at_lag(pictures, {pair}, usable).pixels);
+  const std::size_t half = pairs.size() / 2;
+  const OverPairs before = over_pairs(std::span(of_pair).first(half)),
+                  after = over_pairs(std::span(of_pair).last(half));
+  if (!(before.mean > 0 && after.mean > 0)) return before.mean != after.mean;
+  const double error = std::sqrt(before.squared_error + after.squared_error);
+  if (std::abs(after.mean - before.mean) <= standard_errors * error) return false;
   // A line is one sample. Differences that share a frame have a correlation of -1/2, which raises the variance of their
   // mean square by 3/2.
   const double lines = std::max(1, std::min(usable.rows, usable.cols) - 1);
   const double freedom = lines * static_cast<double>(half) / 1.5;
-  const double ratio = std::max(before, after) / std::min(before, after);
+  const double ratio = std::max(before.mean, after.mean) / std::min(before.mean, after.mean);
   return ratio > least_ratio &&
          cdf(distribution::complement(distribution::FisherF(freedom, freedom), ratio)) < by_chance;
 }

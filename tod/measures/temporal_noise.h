@@ -36,7 +36,9 @@ struct TemporalNoise {
   std::optional<double> lag1_correlation;
   /// Whether the noise differs between the first and the second half of the successive frames: their mean squares,
   /// without changes of whole frames, have a ratio above 1.15 (7 % of the noise), which chance exceeds in less than
-  /// 1e-9 of all recordings, even if whole rows or columns cause the noise. False for fewer than eight pairs of frames.
+  /// 1e-9 of all recordings, even if whole rows or columns cause the noise. They also differ by more than five standard
+  /// errors from the scatter between pairs of frames, because some cameras disturb single frames. False for fewer than
+  /// eight pairs.
   bool changes = false;
   /// 0 for a pixel that never changes, or where the scene moved (more than twice the median pixel's noise).
   cv::Mat1b usable;
