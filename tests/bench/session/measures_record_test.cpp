@@ -374,12 +374,13 @@ INSTANTIATE_TEST_SUITE_P(
              {"positive_k", "negative_k", "threshold_k", "best_phase_k", "reason"}},
         Part{"gain_control",
              R"({"unit":"count","frames":10,"levels":[{"set_delta_t_k":1.0,"said_delta_t_k":1.5,"surround":100.0,)"
-             R"("lowest":90.0,"highest":200.0,"contrast":8.0,"contrast_u":0.5},{"set_delta_t_k":10.0,)"
+             R"("lowest":90.0,"highest":200.0,"contrast":8.0,"contrast_u":0.5,"triangles":0},)"
+             R"({"set_delta_t_k":10.0,)"
              R"("said_delta_t_k":10.5,"surround":101.0,"lowest":80.0,"highest":300.0,"contrast":60.0,)"
-             R"("contrast_u":0.25}],"settling":{"delta_t_k":4.0,"change":3.5,"time_constant_ms":125.0,)"
+             R"("contrast_u":0.25,"triangles":0}],"settling":{"delta_t_k":4.0,"change":3.5,"time_constant_ms":125.0,)"
              R"("p_first_order":0.5,"points":[{"time_s":0.02,"left":0.5,"rising":true},{"time_s":0.04,"left":0.25,)"
              R"("rising":false}]}})",
-             {"frames", "change", "p_first_order"},
+             {"frames", "change", "p_first_order", "triangles"},
              {"settling"}},
         Part{"quantities", nullptr, {"definition"}, {"value"}}, Part{"picture", nullptr, {}, {}},
         Part{"maps", nullptr, {}, {}}),
