@@ -55,13 +55,26 @@ double level_between(const cv::Mat1w& a, const cv::Mat1w& b) {
   return cv::mean(a)[0] - cv::mean(b)[0];
 }
 
-/// Returns the shift of rows with the least difference.
-std::pair<int, double> best_shift(const cv::Mat1w& a, const cv::Mat1w& b, double level) {
-  std::pair<int, double> best{0, HUGE_VAL};
-  const int step = std::clamp(step_for(a), 1, std::max(1, a.cols / 4));
+/// Step of the compared columns.
+int step_of_columns(const cv::Mat1w& picture) {
+  return std::clamp(step_for(picture), 1, std::max(1, picture.cols / 4));
+}
+
+/// A shift of rows, and the difference with it relative to that without it.
+struct RowShift {
+  int rows = 0;
+  double ratio = HUGE_VAL;
+};
+
+/// Returns the shift with the least difference. A ratio that the errors of the difference explain is infinite.
+RowShift best_shift(const cv::Mat1w& a, const cv::Mat1w& b, double level) {
+  const int step = step_of_columns(a);
+  // Of the same columns: a row of telemetry is one of the columns of a transposed picture.
+  const ShiftedDifference as_it_is = difference(a, b, 0, step, level);
+  RowShift best;
   for (int shift = least_shift; shift <= a.rows - least_shift; ++shift) {
-    const double seen = difference(a, b, shift, step, level).mean;
-    if (seen < best.second) best = {shift, seen};
+    const double ratio = difference(a, b, shift, step, level).mean / as_it_is.mean;
+    if (ratio < best.ratio && ratio < 1 - put_right_errors * as_it_is.relative_error) best = {shift, ratio};
   }
   return best;
 }
@@ -103,27 +116,30 @@ std::optional<std::string> MovedPicture::see(const cv::Mat1w& counts) {
     return std::nullopt;
   }
   const double level = level_between(counts, reference_);
-  const int step = std::clamp(step_for(counts), 1, std::max(1, counts.cols / 4));
-  const auto [as_it_is, relative_error] = difference(counts, reference_, 0, step, level);
-  const bool usual = least_difference_ && as_it_is <= alike * *least_difference_;
+  const int step = step_of_columns(counts);
+  const ShiftedDifference as_it_is = difference(counts, reference_, 0, step, level);
+  const bool usual = least_difference_ && as_it_is.mean <= alike * *least_difference_;
   std::optional<std::string> found;
-  if (as_it_is > 0 && (!usual || compared_ < first_pictures)) {
-    double least = std::min(put_right, 1 - put_right_errors * relative_error) * as_it_is;
-    const auto propose = [&](double seen, const std::string& words) {
-      if (seen >= least) return;
-      least = seen;
+  if (as_it_is.mean > 0 && (!usual || compared_ < first_pictures)) {
+    double least = put_right;
+    const auto propose = [&](double ratio, const std::string& words) {
+      if (!(ratio < least)) return;
+      least = ratio;
       found = words;
     };
-    const auto [rows, by_rows] = best_shift(counts, reference_, level);
-    propose(by_rows, "it wraps around vertically, shifted by " + std::to_string(rows) + " px");
-    const auto [columns, by_columns] = best_shift(counts.t(), reference_.t(), level);
-    propose(by_columns, "it wraps around horizontally, shifted by " + std::to_string(columns) + " px");
-    for (const Turned& other : turned(counts))
-      propose(difference(other.picture, reference_, 0, step, level).mean, other.words);
+    const RowShift rows = best_shift(counts, reference_, level);
+    propose(rows.ratio, "it wraps around vertically, shifted by " + std::to_string(rows.rows) + " px");
+    const RowShift columns = best_shift(counts.t(), reference_.t(), level);
+    propose(columns.ratio, "it wraps around horizontally, shifted by " + std::to_string(columns.rows) + " px");
+    const double least_errors = 1 - put_right_errors * as_it_is.relative_error;
+    for (const Turned& other : turned(counts)) {
+      const double ratio = difference(other.picture, reference_, 0, step, level).mean / as_it_is.mean;
+      if (ratio < least_errors) propose(ratio, other.words);
+    }
   }
   ++compared_;
   if (found) return found;
-  if (as_it_is > 0) least_difference_ = std::min(as_it_is, least_difference_.value_or(as_it_is));
+  if (as_it_is.mean > 0) least_difference_ = std::min(as_it_is.mean, least_difference_.value_or(as_it_is.mean));
   reference_ = counts;
   return std::nullopt;
 }

@@ -129,7 +129,7 @@ TEST(PictureFile, IsRefusedWithItsNameWhenItIsNoPicture) {
   };
   const std::filesystem::path path = folder.path() / "picture.npy";
   EXPECT_THAT(refused(path), HasSubstr("picture.npy: no such file"));
-  EXPECT_THAT(refused(folder.path()), HasSubstr("no such file"));
+  EXPECT_THAT(refused(folder.path()), HasSubstr("it is a folder"));
   std::ofstream(path).close();
   EXPECT_THAT(refused(path), HasSubstr("empty"));
   std::ofstream(path) << "size,correct";
