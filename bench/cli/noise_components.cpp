@@ -80,6 +80,13 @@ tl::unexpected<Error> unsteady() {
       "--across-corrections");
 }
 
+tl::unexpected<Error> outside_picture(int row, int rows) {
+  return fail(ErrorCode::invalid_input,
+              "row " + std::to_string(row + 1) + " of " + std::to_string(rows) +
+                  " is no part of the picture: it differs from the rows beside it as telemetry or a defect does, and "
+                  "would determine the components. Record again without this row");
+}
+
 Result<WholeRecording> whole_recording(Console& console, const std::string& id, AcrossCorrections across) {
   TODBENCH_TRY(const auto source, started_recording(console, id));
   InputGate gate;
@@ -118,6 +125,7 @@ Result<WholeRecording> whole_recording(Console& console, const std::string& id, 
   whole.saturated_share /= cube.frames();
   TODBENCH_TRY(whole.table, cube.table());
   whole.memory = cube.pixel_memory();
+  if (const auto row = cube.row_outside_picture()) return outside_picture(*row, whole.table.rows);
   if (const auto change = cube.abrupt_change(); change && across == AcrossCorrections::refuse)
     return cube.few_pairs_stand_out() ? corrected(*change) : unsteady();
   if (cube.noise_changes() && across == AcrossCorrections::refuse) return unsteady();

@@ -391,6 +391,26 @@ TEST(NoiseCommand, SaysThatTheNoiseOfAComponentsCubeChanges) {
   EXPECT_EQ(one_object(plain)["points"].size(), 0u);
 }
 
+TEST(NoiseCommand, RefusesComponentsOfARowOfTelemetry) {
+  const TemporaryFolder folder;
+  std::string frames;
+  for (std::uint64_t frame = 0; frame < 12; ++frame) {
+    const RandomStream stream = RandomStream(1, "telemetry").sub(frame);
+    for (std::uint64_t i = 0; i < 81 * 60; ++i) {
+      const double count = i < 80 * 60 ? 8000 + 5 * stream.normal(i) : 65535 * stream.uniform(i);
+      const auto word = static_cast<unsigned>(std::lround(count));
+      frames += static_cast<char>(word & 0xFFU);
+      frames += static_cast<char>(word >> 8U);
+    }
+  }
+  const std::string name = folder.write("telemetry.raw", frames).string() + "?width=60&height=81";
+
+  expect_refused(todbench({"noise", name, "--components-only"}), 2, "row 81 of 81 is no part of the picture");
+  const Ended plain = todbench({"noise", name, "--contrast-over-noise", "8", "--json"});
+  EXPECT_EQ(plain.code, 0) << plain.err;
+  EXPECT_NEAR(one_object(plain)["temporal_noise"].get<double>(), 5, 0.1);
+}
+
 TEST(NoiseCommand, WithholdsTheAcuityWhereTheSceneMoved) {
   const Ended ended = todbench({"noise", recordings + "flir_sc660.seq", "--json"});
 

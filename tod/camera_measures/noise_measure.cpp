@@ -122,6 +122,10 @@ Result<NoiseSeries> measure_series_noise(FrameTaker& taker, const RadiometricSca
                 fmt::format("the picture changed abruptly before frame {} of the series", *change + 1));
   if (series->cube.noise_changes())
     return fail(ErrorCode::integrity, "the noise of a pixel differs between the two halves of the series");
+  if (const auto row = series->cube.row_outside_picture())
+    return fail(
+        ErrorCode::integrity,
+        fmt::format("row {} of the measured field is no part of the picture, but telemetry or a defect", *row + 1));
   TODBENCH_TRY_VOID(sum_up(*series, scale));
   return std::move(series->out);
 }

@@ -217,6 +217,7 @@ Result<void> NoiseCube::add_frame(const cv::Mat_<Pixel>& frame) {
     frame.convertTo(first_, CV_64F);
     change_ = cv::Mat1d::zeros(frame.size());
     last_ = cv::Mat1d::zeros(frame.size());
+    row_steps_.assign(static_cast<std::size_t>(frame.rows), 0.0);
   }
   if (frame.size() != first_.size()) return fail(ErrorCode::invalid_input, "the frames have different sizes");
   const int rows = frame.rows, columns = frame.cols;
@@ -242,17 +243,19 @@ Result<void> NoiseCube::add_frame(const cv::Mat_<Pixel>& frame) {
     const double* reference = first_[y];
     double* total = change_[y];
     double* last = last_[y];
-    double squares = 0, step_squares = 0;
+    double squares = 0, step_squares = 0, step_sum = 0;
     for (int x = 0; x < columns; ++x) {
       const double change = static_cast<double>(value[x]) - reference[x] - mean;
       const double step = change - last[x];
       total[x] += change;
       squares += change * change;
       step_squares += step * step;
+      step_sum += step;
       last[x] = change;
     }
     squares_ += squares;
     steps += step_squares;
+    row_steps_[static_cast<std::size_t>(y)] += step_squares - step_sum * step_sum / columns;
   }
   frame_means_.push_back(mean);
   for (const double of_row : row_sums) row_means_.push_back(of_row / columns - mean);
@@ -346,6 +349,33 @@ bool NoiseCube::noise_changes() const {
   const double freedom = (first_.rows - 1.0) * (first_.cols - 1.0) * static_cast<double>(half) / 1.5;
   const double ratio = std::max(before, after) / std::min(before, after);
   return ratio > least_ratio && cdf(complement(distribution::FisherF(freedom, freedom), ratio)) < by_chance;
+}
+
+std::optional<int> NoiseCube::row_outside_picture() const {
+  constexpr int edge = 4;  // rows that may be telemetry, and as many to compare with
+  constexpr double most_steps = 100, most_roughness = 10;
+  const int rows = first_.rows;
+  if (frames_ < 2 || rows < 4 * edge || first_.cols < 2) return std::nullopt;
+  const cv::Mat1d mean = mean_frame();
+  const auto roughness = [&](int row) {
+    double sum = 0;
+    for (int x = 1; x < mean.cols; ++x) sum += std::abs(mean(row, x) - mean(row, x - 1));
+    return sum;
+  };
+  for (const bool upper : {true, false}) {
+    const auto row_at = [&](int from_edge) { return upper ? from_edge : rows - 1 - from_edge; };
+    double steps = 0, rough = 0;
+    for (int k = edge; k < 2 * edge; ++k) {
+      steps = std::max(steps, row_steps_[static_cast<std::size_t>(row_at(k))]);
+      rough = std::max(rough, roughness(row_at(k)));
+    }
+    for (int k = 0; k < edge; ++k) {
+      const int row = row_at(k);
+      if (row_steps_[static_cast<std::size_t>(row)] > most_steps * steps || roughness(row) > most_roughness * rough)
+        return row;
+    }
+  }
+  return std::nullopt;
 }
 
 std::optional<double> NoiseCube::lag1_correlation() const {

@@ -122,6 +122,12 @@ class NoiseCube {
   /// differences of successive frames, as in abrupt_change(), have a ratio above 1.15 (7 % of the noise), which chance
   /// exceeds in less than 1e-9 of all recordings. False for fewer than eight frames.
   [[nodiscard]] bool noise_changes() const;
+  /// Returns the index of a row at the upper or lower edge that is no part of the picture, for example telemetry. Each of
+  /// the outer four rows is compared with the four rows further inside. A row is outside the picture if its mean square
+  /// successive difference, without changes of the whole row, exceeds 100 times theirs, or if the mean difference of its
+  /// adjacent pixels in the mean frame exceeds 10 times theirs. Noise and a scene behind a lens stay far below both
+  /// limits. Empty: no such row, or fewer than 16 rows.
+  [[nodiscard]] std::optional<int> row_outside_picture() const;
 
  private:
   template <typename Pixel>
@@ -133,6 +139,7 @@ class NoiseCube {
   double squares_ = 0;                            ///< sum of the squares of these changes
   cv::Mat1d last_;                                ///< change of the last frame without its mean
   std::vector<double> steps_;                     ///< mean square of each successive difference
+  std::vector<double> row_steps_;                 ///< sum of the squares of successive differences about their row mean
   std::vector<double> frame_means_;               ///< mean change of each frame
   std::vector<double> row_means_, column_means_;  ///< of each frame in order, without the frame's mean
 };

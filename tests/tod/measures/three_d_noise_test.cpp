@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <opencv2/imgproc.hpp>
 
 #include "tests/tod/measures/measures_reference.h"
 #include "tests/tod/measures/simulated_cube.h"
@@ -247,6 +248,50 @@ TEST(NoiseCube, RefusesWhatIsNoTable) {
   EXPECT_FALSE(cube.add(cv::Mat1d(3, 4, std::numeric_limits<double>::quiet_NaN())));
   ASSERT_TRUE(cube.add(cv::Mat1d(3, 4, 2.0)));
   EXPECT_TRUE(cube.table());
+}
+
+NoiseCube cube_of(const std::vector<cv::Mat1d>& frames) {
+  NoiseCube cube;
+  for (const cv::Mat1d& frame : frames) EXPECT_TRUE(cube.add(frame));
+  return cube;
+}
+
+TEST(NoiseCube, FindsARowOfTelemetry) {
+  ByComponent sd;
+  sd[tvh] = 5, sd[vh] = 10;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    for (const int row : {0, 2, 29, 31}) {
+      const RandomStream words(seed, "telemetry");
+      std::vector<cv::Mat1d> changing = test::simulated_cube(8, 32, 40, sd, seed), constant;
+      for (const cv::Mat1d& frame : changing) constant.push_back(frame.clone());
+      for (std::size_t k = 0; k < changing.size(); ++k) {
+        for (int x = 0; x < 40; ++x) {
+          const auto at = static_cast<std::uint64_t>(x);
+          changing[k](row, x) = 65535 * words.sub(k).uniform(at);
+          // A frame counter among words that stay.
+          constant[k](row, x) = x == 3 ? static_cast<double>(k) : 65535 * words.uniform(at);
+        }
+      }
+      EXPECT_EQ(cube_of(changing).row_outside_picture(), row) << seed;
+      EXPECT_EQ(cube_of(constant).row_outside_picture(), row) << seed;
+    }
+  }
+}
+
+TEST(NoiseCube, TakesNoRowOfThePictureForTelemetry) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    ByComponent sd;
+    sd[tvh] = 1, sd[vh] = seed % 3 == 0 ? 0 : 10, sd[v] = seed % 2 == 0 ? 30 : 0, sd[tv] = seed % 5 == 0 ? 20 : 0;
+    std::vector<cv::Mat1d> frames = test::simulated_cube(2 + static_cast<int>(seed % 6), 24, 40, sd, seed);
+    // A hot object that ends three rows above the lower edge, behind a lens.
+    for (cv::Mat1d& frame : frames) {
+      cv::Mat1d object = cv::Mat1d::zeros(frame.size());
+      object(cv::Rect(10, 12, 8, 9)) = 500;
+      cv::GaussianBlur(object, object, {5, 5}, 0.6);
+      frame += object;
+    }
+    EXPECT_FALSE(cube_of(frames).row_outside_picture()) << seed;
+  }
 }
 
 }  // namespace
