@@ -49,11 +49,11 @@ class FrameSequence {
   /// `frame_rate_hz` as the camera states it; 0: unknown.
   FrameSequence(FrameNumberKind kind, double frame_rate_hz);
 
-  /// Returns the place of a frame. A frame without a number gets the place after the last frame; its true place is this
-  /// one or a later one. 16-bit numbers are unwrapped over gaps of up to 32767 frames (ten minutes at 50 Hz). A frame
-  /// that is older according to its number and the camera's clock gets its older place. A counted gap before a frame
-  /// with `after_unread` is `unread`. So is a gap before the following frame, because a frame may have been in transfer
-  /// when the buffers were full.
+  /// Returns the position of a frame in the sequence. A frame without a number gets the position after the last frame;
+  /// its true position is the same or later. 16-bit numbers are unwrapped over gaps of up to 32767 frames (ten minutes
+  /// at 50 Hz). A frame that is older according to its number and the camera's clock gets its older position. A counted
+  /// gap before a frame with `after_unread` is `unread`. A gap before the following frame is `unread` too, because a
+  /// frame may have been in transfer when the buffers were full.
   [[nodiscard]] FramePlace next(const FrameStamp& as_told);
 
  private:

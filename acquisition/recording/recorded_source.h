@@ -28,7 +28,7 @@ struct RecordedFrame {
 /// The call that failed on the recorded camera.
 enum class FailedCall { next, correct_nonuniformity };
 
-/// A recorded failure of the camera. It takes the place of a frame or of a correction.
+/// A recorded failure of the camera. The failure replaces a frame or a correction.
 struct RecordedFailure {
   std::uint64_t before_frame = 0;  ///< index of the next frame
   Error error;

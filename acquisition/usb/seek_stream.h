@@ -35,7 +35,7 @@ class SeekStream {
   SeekStream(const SeekStream&) = delete;
   SeekStream& operator=(const SeekStream&) = delete;
 
-  /// Returns the the next arrival. Errors: `timeout`, `interrupted` (end() was called), `disconnected`. Any thread.
+  /// Returns the next arrival. Errors: `timeout`, `interrupted` (end() was called), `disconnected`. Any thread.
   [[nodiscard]] Result<SeekArrival> next(std::chrono::milliseconds timeout);
   /// Ends the stream and all present and later calls of next() within milliseconds. Any thread, one at a time.
   void end();

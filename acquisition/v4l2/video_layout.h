@@ -50,8 +50,8 @@ struct VideoLayout {
   double kelvin_per_count = 0;  ///< 0: the family does not state it
 };
 
-/// Maximum number of additional rows that are taken as telemetry if a mode is higher than another mode of the same
-/// camera and width. Telemetry of the Boson and the Tau has up to 4 rows.
+/// Maximum number of additional rows that are interpreted as telemetry if a mode is higher than another mode of the
+/// same camera and width. Telemetry of the Boson and the Tau has up to 4 rows.
 inline constexpr int most_foreign_rows = 4;
 
 /// The user's choice of a mode; empty members are chosen automatically.

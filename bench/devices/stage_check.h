@@ -19,7 +19,7 @@ struct StageMovement {
 };
 
 /// Largest accepted deviation of StageFit::seen_per_asked from the unit matrix, per element. The check adds four
-/// standard errors. Shifts of a run reach 0.7 px: an error of a tenth costs less than 0.2 % of acuity.
+/// standard errors. Shifts of a run reach 0.7 px: an error of 0.1 reduces the acuity by less than 0.2 %.
 inline constexpr double most_stage_deviation = 0.1;
 
 /// Opens camera and target of the plan, presents its first plate at its highest contrast in the centre, and moves the

@@ -90,12 +90,13 @@ struct DecisionForecast {
   double floor_percent = 0;                ///< half-width of all stated rows; 0: no budget
   double smallest_half_width_percent = 0;  ///< smallest_half_width_ln()
   std::vector<FloorRow> rows{};            ///< largest first
-  /// Half-width that the scatter of the measured contrast makes in the plan; presentations do not reduce it.
+  /// Half-width that the scatter of the measured contrast causes in the plan. More presentations do not reduce it.
   double contrast_percent = 0;
-  /// With contrast_percent, deciding_contrast_frames(); empty if the number of the plan need not change.
+  /// Frames of the measured contrast from deciding_contrast_frames(); empty if the number of the plan need not change.
   std::optional<int> contrast_frames{};
   std::vector<DecisionDesign> designs{};   ///< by bench time
-  std::optional<double> enough_bench_s{};  ///< least time with the smallest half-width that matters
+  std::optional<double> enough_bench_s{};  ///< least bench time of a design whose half-width is at most
+                                           ///< smallest_half_width_percent
 };
 
 /// Returns the bench time in s. For a simulated scene, the change times of the plan are used, as if it ran on a bench.

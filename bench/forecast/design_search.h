@@ -30,7 +30,7 @@ struct PricedDesign {
   Plan plan;
   double bench_s = 0;                          ///< laboratory_time(): changes, frames, corrections; without computing
   double changes_s = 0;                        ///< part of bench_s for changes of the target
-  int set_ups = 0;                             ///< that the run is expected to show
+  int set_ups = 0;                             ///< set-ups that the run is expected to show
   std::optional<double> half_width_percent{};  ///< the largest of the contrasts
   std::vector<ContrastPrediction> contrasts{};
 };
@@ -46,7 +46,7 @@ struct RampDesign {
 struct BestDesign {
   PricedDesign as_planned, best;
   bool planned_meets = false;  ///< whether `as_planned` meets the request
-  double least_s = 0;          ///< bench time of the fastest design examined, whatever its half-width
+  double least_s = 0;          ///< bench time of the fastest design examined, regardless of its half-width
   int set_ups = 0;
   /// Share of the set-ups without their counterpart, the mounting of the same plate that is rotated by 180 degrees. An
   /// error that reverses its sign with this rotation enters S75 with this share; its scatter is in the interval.
@@ -58,24 +58,24 @@ struct BestDesign {
   std::optional<double> settled_s{};
   /// Bench time of the best design of another kind, if `best` is an adaptive schedule.
   std::optional<double> not_adaptive_s{};
-  /// The fastest ramp that meets the request; empty if the bench or the plan admits none.
+  /// The fastest ramp that meets the request; empty if the bench or the plan does not allow a ramp.
   std::optional<RampDesign> ramp{};
 };
 
 /// Searches mountings of each plate, phases, frames of each contrast, and whether the contrasts settle. The
 /// presentations are in the order of constant_stimuli(): fast changes run during slow changes, so no other nesting
-/// takes less time. A design has at least five set-ups, which the intervals of graded answers require (or as many as
-/// the plan, if the plan has fewer), three phases, and eight presentations per contrast. Mountings are taken in pairs
-/// of counterparts. The plate is located in fewer frames than planned if their noise is at most 0.15 % of the highest
-/// contrast. With `decide` and without an equivalence margin, contrasts without a limit are left out, except the
-/// highest contrast, which locates the plate. A ramp between the strongest and the weakest contrast is compared, at the
-/// fastest rate that meets the request, up to the rate that the lag of the plate allows (0.1 s if the plan states
-/// none). The ramp takes 10 to 1200 s in one direction. The ramp is the best design if it is faster and the plan states
-/// the lag. If the plan is an adaptive schedule, it is compared in its own set-ups, at the widest half-width that meets
-/// the request. The plan as it is remains the best design if it meets the request, nothing is faster, and it has at
-/// least three phases and eight presentations per contrast. Errors: `invalid_input` (no design examined meets the
-/// request; the message states the least half-width, or the rows of the budget that prevent the decision),
-/// predict_plan(), `interrupted`.
+/// takes less time. A design has at least three phases, eight presentations per contrast, and five set-ups, which the
+/// intervals of graded answers require. If the plan has fewer than five set-ups, its number is the minimum. Mountings
+/// are added in pairs of counterparts. The plate is located in fewer frames than planned if their noise is at most 0.15
+/// % of the highest contrast. With `decide` and without an equivalence margin, contrasts without a limit are left out,
+/// except the highest contrast, which locates the plate. A ramp between the strongest and the weakest contrast is
+/// compared, at the fastest rate that meets the request, up to the rate that the lag of the plate allows (0.1 s if the
+/// plan states none). The ramp takes 10 to 1200 s in one direction. The ramp is the best design if it is faster and the
+/// plan states the lag. If the plan is an adaptive schedule, it is compared in its own set-ups, at the widest
+/// half-width that meets the request. The plan as it is remains the best design if it meets the request, no design is
+/// faster, and it has at least three phases and eight presentations per contrast. Errors: `invalid_input` (no design
+/// examined meets the request; the message states the least half-width, or the rows of the budget that prevent the
+/// decision), predict_plan(), `interrupted`.
 [[nodiscard]] Result<BestDesign> best_design(const Plan& plan, const ExperimentInputs& inputs,
                                              const DesignRequest& request, std::stop_token stop);
 

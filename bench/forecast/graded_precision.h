@@ -11,7 +11,7 @@ struct GradedDesignFigures {
   /// Share of the sensor in the variance of the noise that decides an answer; the rest is the observer's.
   double sensor_share = 0;
   double pattern_share = 0;  ///< share of the sensor's fixed pattern in the same variance, part of sensor_share
-  double noise = 0;          ///< noise that decides an answer at the threshold, over the contrast
+  double noise = 0;          ///< noise that decides an answer at the threshold, divided by the contrast
   double size_pitch = 4;     ///< at the threshold
   int frames = 1;            ///< per presentation
   int draws = 32;            ///< draws of the observer's noise, per frame
@@ -31,18 +31,19 @@ struct GradedDesignFigures {
 ///   (f - g) / F + (1 - f) / (F D) + r + g n s,   f = (3/4)^2 (Phi2(z, z; share) - (2/3)^2) / (p (1 - p)),
 ///   p = 3/4 = 1/4 + 3/4 Phi(z)
 ///
-/// f is the share of the sensor's noise in an answer at the threshold. The answer is right by luck in a quarter of the
-/// cases and otherwise by a Gaussian decision variable; Phi2 is the probability that this variable makes two answers to
-/// the same frame right. g is the share of the fixed pattern, which frames do not average. The n phases of a triangle
-/// of size S average the pattern only if they move the triangle across its detectors: s = 1.5 exp(-(1.9 / S)^2), S in
-/// pitches. 1.5 applies to set-ups that place triangles on the same detectors (both numbers from 78 runs of
-/// `graded_coverage_study` with a pattern of 0.1 K). r is 0.048 over the number of phases, at most 0.15, if the
-/// mountings cancel the phases (five set-ups or more; 138 runs with 12 phases and 11 runs with 3 phases of
+/// f is the share of the sensor's noise in an answer at the threshold. The answer is correct by chance in a quarter of
+/// the cases; otherwise a Gaussian decision variable determines the answer. Phi2 is the probability that this variable
+/// makes two answers to the same frame correct. g is the share of the fixed pattern, which frames do not average. The n
+/// phases of a triangle of size S average the pattern only if they move the triangle across its detectors: s = 1.5
+/// exp(-(1.9 / S)^2), S in pitches. 1.5 applies to set-ups that place triangles on the same detectors (both numbers
+/// from 78 runs of `graded_coverage_study` with a pattern of 0.1 K). r is 0.048 over the number of phases, at most
+/// 0.15, if the mountings cancel the phases (five set-ups or more; 138 runs with 12 phases and 11 runs with 3 phases of
 /// `graded_coverage_study`). With fewer set-ups the phases do not cancel: 0.28 / (1 + (noise / 0.13)^2), because noise
-/// hides the place of a triangle between the detectors (48 runs of adaptive plans at 8 contrasts with the SC2000, 2 to
-/// 5 set-ups).
+/// hides the position of a triangle between the detectors (48 runs of adaptive plans at 8 contrasts with the SC2000, 2
+/// to 5 set-ups).
 ///
-/// For first-order noise of lag-1 correlation rho, the answers to frames k apart share
+/// For first-order noise of lag-1 correlation rho, the answers to two frames at a distance of k frames have in common
+/// the share
 ///   c(k) = (3/4)^2 (Phi2(z, z; pattern share + (sensor share - pattern share) rho^k) - (2/3)^2) / (p (1 - p)) - g.
 /// Then (f - g) / F becomes the variance of a mean of F of these answers, and the covariances of successive
 /// presentations of a set-up are added, times exp(-(1.9 / S)^2).
@@ -52,10 +53,10 @@ struct GradedDesignFigures {
 /// 1 + g (n s - 1), plus the covariances of successive presentations.
 [[nodiscard]] double pattern_inflation(const GradedDesignFigures& design);
 
-/// Returns the variance of the ln ratio of camera and twin by common phases, over the variance of as many binary
-/// answers. The phases are common and cancel. The remaining terms are the noise of the camera's frames with its fixed
-/// pattern, the observer's noise, and the noise of the twin's answers, each the mean of `twin_draws` own frames. The
-/// variance does not contain the scatter of the effective contrast.
+/// Returns the variance of the ln ratio of camera and twin by common phases, divided by the variance of the same number
+/// of binary answers. The phases are common and cancel. The remaining terms are the noise of the camera's frames with
+/// its fixed pattern, the observer's noise, and the noise of the twin's answers, where each answer is the mean over
+/// `twin_draws` frames of its own. The variance does not contain the scatter of the effective contrast.
 [[nodiscard]] double paired_variance_ratio(const GradedDesignFigures& design, int twin_draws);
 
 /// Choices for the number of frames per presentation.

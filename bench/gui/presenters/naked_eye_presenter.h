@@ -45,7 +45,7 @@ class NakedEyePresenter final : public QObject {
                               std::optional<int> shown_ms);
   /// Records the answer of the person to the picture shown now or last.
   void answer(Apex apex);
-  /// Stops the prediction, or ends with the answers so far.
+  /// Stops the prediction, or ends the experiment and keeps the answers.
   void abort();
 
   /// Returns whether the prediction is being computed.

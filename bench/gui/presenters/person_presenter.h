@@ -60,7 +60,7 @@ class PersonPresenter final : public QObject {
              std::optional<int> shown_ms, int magnification = 24);
   /// Records the answer of the person to the frame shown now or last.
   void answer(std::size_t alternative);
-  /// Ends the experiment with the answers so far.
+  /// Ends the experiment and keeps the answers.
   void abort();
 
   /// Returns the state of the display.

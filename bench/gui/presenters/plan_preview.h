@@ -55,7 +55,7 @@ struct PlanForecast {
 struct PlannedContrast {
   double delta_t_k = 0;
   std::optional<double> s75_mrad;  ///< S75 by the first tier of the planner, or by expected_thresholds()
-  std::optional<double> camera_uncertainty_percent, twin_uncertainty_percent;  ///< half the 95 % interval of S75
+  std::optional<double> camera_uncertainty_percent, twin_uncertainty_percent;  ///< half of the 95 % interval of S75
 };
 
 /// Counts, time and uncertainties of a plan.
@@ -65,7 +65,7 @@ struct PlanPreview {
   std::optional<double> twin_s;
   std::vector<PlannedContrast> contrasts;
   std::vector<std::pair<double, double>> by_frames;  ///< bench time and uncertainty of PlanForecast::by_frames
-  /// Returns the largest uncertainty of the camera over the contrasts; empty if one has no threshold.
+  /// Returns the largest uncertainty of the camera over the contrasts; empty if a contrast has no threshold.
   [[nodiscard]] std::optional<double> uncertainty_percent() const;
 };
 
@@ -90,8 +90,8 @@ struct AccuracyPrice {
 };
 
 /// Runs predict_plan() and predict_times() for tolerances from 0.5 to 20 %. Omits tolerances that 256 phases do not
-/// reach. Returns the points so far if stop is requested. The result does not depend on the tolerance and the phases of
-/// the plan. `known`: as for forecast().
+/// reach. If stop is requested, returns the points that are already computed. The result does not depend on the
+/// tolerance and the phases of the plan. `known`: as for forecast().
 [[nodiscard]] std::vector<AccuracyPrice> accuracy_prices(const LoadedPlan& loaded, const PlanForecast& seen,
                                                          const std::vector<ExpectedThreshold>& known,
                                                          double frame_rate_hz, EffectPlanner& planner,
