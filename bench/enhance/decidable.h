@@ -10,7 +10,7 @@
 namespace todbench {
 
 /// Returns the reason why a point may not be used, in a sentence about `name`: no threshold, no interval, or a finding
-/// that makes it unfit. Empty: it may be used.
+/// that makes the point unfit. Empty: the point may be used.
 [[nodiscard]] std::string why_undecided(const std::string& name, const TodPoint& point);
 /// Returns the reason why the point of a result at this contrast may not be used: no answers, no threshold, no
 /// interval, or a finding that makes the point unfit. Empty: the point may be used.

@@ -12,7 +12,7 @@ struct GradedDesignFigures {
   double sensor_share = 0;
   double pattern_share = 0;  ///< share of the sensor's fixed pattern in the same variance, part of sensor_share
   double noise = 0;          ///< noise that decides an answer at the threshold, divided by the contrast
-  double size_pitch = 4;     ///< at the threshold
+  double size_pitch = 4;     ///< size of the triangle at the threshold, in pitches
   int frames = 1;            ///< per presentation
   int draws = 32;            ///< draws of the observer's noise, per frame
   int set_ups = 8;           ///< plates times mountings

@@ -57,7 +57,7 @@ inline constexpr DemandKind DemandKind::acuity{"acuity"}, DemandKind::identified
 /// Ratio of camera and twin that an equivalence demand uses.
 enum class RatioKind {
   unpaired,  ///< ratio of the two thresholds
-  paired,    ///< ratio from the phases that both observed (tod/comparison/paired_ratio.h)
+  paired,    ///< ratio from the phases that camera and twin both observed (tod/comparison/paired_ratio.h)
 };
 inline constexpr std::array all_ratio_kinds{RatioKind::unpaired, RatioKind::paired};
 /// Returns the name of the enumerator.

@@ -53,9 +53,9 @@ struct DynamicAcuities {
 };
 
 /// Computes the acuities with dynamic_trials(). Adds the speed 0 in front if it is missing. If `options` state no
-/// sizes, uses eleven sizes from 0.5 to 2.5 times the threshold of the target at rest, which a direct estimate gives.
-/// For an observer with an eye, also computes the observers at both limits of its open parameters, each with its own
-/// sizes.
+/// sizes, uses eleven sizes from 0.5 to 2.5 times the threshold of the target at rest, which is computed by a direct
+/// estimate. For an observer with an eye, also computes the observers at both limits of its open parameters, each with
+/// its own sizes.
 [[nodiscard]] Result<DynamicAcuities> dynamic_acuity(const SensorSpec& sensor, TemplateObserver& observer,
                                                      DynamicTrialOptions options);
 

@@ -24,8 +24,7 @@ struct NakedEyeTask {
   bool operator==(const NakedEyeTask&) const = default;
 };
 
-/// Checks a task. Errors: `invalid_input` with one sentence (no eye, no display, a contrast or noise that the display
-/// cannot show).
+/// Checks a task. Errors: `invalid_input` (no eye, no display, a contrast or noise that the display cannot show).
 [[nodiscard]] Result<void> validate(const NakedEyeTask& task);
 
 /// Returns a display whose luminance is proportional to the level and on which 1 K is a luminance contrast of 1. It

@@ -51,7 +51,7 @@ struct PeopleFitOptions {
   TemplateObserverSpec from;
   std::string from_sha256;                      ///< SHA-256 of the text of `from`
   std::string name;                             ///< name of the fitted observer
-  std::array<bool, observer_key_count> free{};  ///< parameters to fit; the others stay as in `from`
+  std::array<bool, observer_key_count> free{};  ///< parameters to fit; the other parameters keep the values of `from`
   PersonsAre persons = PersonsAre::codes;
   int replicates = 299;  ///< replicates of the bootstrap of the goodness of fit, at least 19
   int draws = 384;       ///< noise vectors per answer probability, an even number

@@ -23,7 +23,7 @@ enum class Side {
 [[nodiscard]] std::string_view to_string(Side side);
 
 /// Returns the options with the seed of the plan. `ifov_mrad`: of the camera, or of the sensor for the simulated side.
-/// The answers are binary in every case; chosen_answers() selects others.
+/// The answers are binary in every case; chosen_answers() selects other answers.
 [[nodiscard]] MeasurementOptions measurement_options(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                      double ifov_mrad);
 /// Returns the options for the camera of the plan, with its contrast unit.

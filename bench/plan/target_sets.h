@@ -52,9 +52,9 @@ struct CutTarget {
   /// Standard deviation of the pixels beside the target; empty if there are too few.
   std::optional<double> background_sd_k{};
 };
-/// Cuts the target. The background is `background_k` of the cut. If that is empty, it is the mean of the pixels at 3 to
-/// 5 pixels from the target. Nearer pixels contain the blur of the camera that took the picture. Errors:
-/// `invalid_input` in one sentence.
+/// Cuts the target. The background is `background_k` of the cut. If `background_k` is empty, the background is the mean
+/// of the pixels at a distance of 3 to 5 pixels from the target. Nearer pixels contain the blur of the camera that took
+/// the picture. Errors: `invalid_input`.
 [[nodiscard]] Result<CutTarget> cut_target(const cv::Mat1d& kelvin, const PictureCut& cut);
 
 /// Returns the smallest and largest element of the pictures of a set in metres; empty for models.

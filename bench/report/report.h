@@ -114,9 +114,9 @@ struct ReportData {
   std::vector<Interruption> interruptions;  ///< camera losses after which the run continued
 };
 
-/// Returns the verdict to show: the decision of the session's verdict, with three exceptions. Changed files always give
-/// `changed`. An interrupted run gives `fail` if it failed, otherwise `interrupted`. A pass without limits, or no
-/// verdict, gives `not_judged`.
+/// Returns the verdict to show: the decision of the session's verdict, with three exceptions. If files were changed,
+/// the result is `changed`. For an interrupted run, the result is `fail` if the run failed, otherwise `interrupted`.
+/// For a pass without limits, and without a verdict, the result is `not_judged`.
 [[nodiscard]] ReportVerdict report_verdict(const ReportData& data);
 
 /// Returns the TOD curve of the report.

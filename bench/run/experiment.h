@@ -53,7 +53,7 @@ struct ExperimentOptions {
   std::optional<OriginRecord> origin{};  ///< origin of a run on the recorded frames of another session; empty: none
 };
 
-/// Result of a run. The session folder contains the same.
+/// Result of a run. The session folder contains the same results.
 struct ExperimentOutcome {
   std::filesystem::path folder;
   TodCurve curve;                ///< measured, or simulated by simulate_plan()

@@ -55,7 +55,7 @@ class RecordedAnswers {
 
   /// Returns whether every recorded answer was given.
   [[nodiscard]] bool at_end() const { return next_ == readings_.size(); }
-  /// Succeeds if all questions so far agree with the recording.
+  /// Succeeds if all previous questions agree with the recording.
   [[nodiscard]] Result<void> agreed() const;
 
  private:

@@ -45,7 +45,7 @@ struct PersonTrial {
   std::uint64_t draw = 0;
 };
 
-/// Levels shown black and white, in kelvin above the background.
+/// Levels displayed as black and as white, in kelvin above the background.
 struct GreyScale {
   double black_k = -1, white_k = 1;
 };
@@ -100,7 +100,7 @@ struct ExperimentAnswer {
   std::optional<int> limit_ms{};
 };
 
-/// Right answers of one condition, with Wilson's 95 % interval; for `bars_resolved` only frames with bars.
+/// Correct answers of one condition, with Wilson's 95 % interval; for `bars_resolved` only frames with bars.
 struct PersonShare {
   int shown = 0, right = 0;
   Interval ci95;
@@ -123,7 +123,8 @@ struct PersonResult {
                                          const std::vector<ExperimentAnswer>& answers);
 
 /// Writes person.json and answers.csv into a new folder. person.json contains the facts about the person, and results
-/// under the same keys as the output of `identify` or `mrtd`. Errors: `invalid_input` if it exists; `io` with the path.
+/// under the same keys as the output of `identify` or `mrtd`. Errors: `invalid_input` if the folder exists; `io` with
+/// the path.
 [[nodiscard]] Result<void> write_person(const std::filesystem::path& folder, const PersonExperiment& experiment,
                                         const std::vector<ExperimentAnswer>& answers, const PersonFacts& person,
                                         bool complete);

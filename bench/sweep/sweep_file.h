@@ -65,7 +65,7 @@ struct SweepFile {
 };
 
 /// Reads [base], [grid], [zip], [sample], [repeat], name, seed, paired, kind, where. Keys of [grid] keep the order of
-/// the file; { from, to, steps } is a list. Errors: `invalid_input` "FILE:LINE: ..." in one sentence.
+/// the file; { from, to, steps } is a list. Errors: `invalid_input` "FILE:LINE: ...".
 [[nodiscard]] Result<SweepFile> read_sweep(const std::filesystem::path& file);
 /// Parses the text of a sweep file. `file`: name of the text in messages.
 [[nodiscard]] Result<SweepFile> parse_sweep(std::string_view text, const std::filesystem::path& file);
