@@ -40,7 +40,7 @@ struct ModulePlan {
   int settle_frames = 0;                          ///< frames after which earlier scenes no longer affect the output
   bool operator==(const ModulePlan&) const = default;
 };
-/// Largest values. The smallest value of limit_ms is 1, and of the others 0.
+/// Largest values. The smallest value of limit_ms is 1; the smallest value of the other members is 0.
 struct ModuleRanges {
   int limit_ms = 600000, memory_mib = 1 << 20, restart_frames = 1000000000, settle_frames = 10000;
 };

@@ -19,8 +19,8 @@ namespace todbench {
 /// Estimate at one contrast.
 struct DirectPoint {
   double delta_t_k = 0;
-  /// Contrast that the observer divides by: the set contrast, or the reading of the camera if its counts are too coarse
-  /// or too few.
+  /// Contrast by which the observer divides: the set contrast, or the reading of the camera if its counts are too
+  /// coarse or too few.
   double seen_delta_t_k = 0;
   double s75_pitch = 0;  ///< in detector pitches
   double standard_error_pitch = 0;

@@ -42,9 +42,9 @@ struct DynamicTrials {
 /// Runs the trials. Frames are the counts of the simulated camera. Frame k of a pass has the same random numbers at
 /// every speed, and each pass starts in the same sampling phase, so ratios between speeds are paired. The picture has
 /// no lag, because the transfer functions of time constant and exposure have their mean lag removed. A triangle is
-/// judged at its place when its rows are read. Internal noise is drawn once per decision for any number of frames.
-/// Errors: `invalid_input` (options that cannot be met; a sensor with modules, microscan or super-resolution),
-/// `interrupted`, errors of the stages.
+/// judged at its position at the time at which its rows are read. Internal noise is drawn once per decision for any
+/// number of frames. Errors: `invalid_input` (options that cannot be met; a sensor with modules, microscan or
+/// super-resolution), `interrupted`, errors of the stages.
 [[nodiscard]] Result<std::vector<DynamicTrials>> dynamic_trials(const SensorSpec& sensor, TemplateObserver& observer,
                                                                 const DynamicTrialOptions& options);
 

@@ -65,7 +65,7 @@ struct IdentificationTask {
   /// pass they receive as many frames of the same motion as they store. Their lag is not removed.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   /// Largest distance, in samples, over which a picture influences a sample behind the stages; empty: the whole picture
-  /// does.
+  /// has an influence.
   std::optional<int> stage_reach_px{};
   /// Cn2 of the turbulence along the path of each range, instead of the sensor's Cn2; 0: as in the sensor. The plan
   /// must simulate turbulence. The templates of an observer with knowledge behind the camera include this air.
@@ -109,8 +109,8 @@ struct IdentificationEffort {
 /// Returns one point per range, in the same order. Every target in every aspect is shown with each draw of sensor and
 /// internal noise, in one of 16 sampling phases that change from draw to draw. The template observer sets the internal
 /// noise and the enlargement of the sensor's noise. The contrast is dT_RSS behind the air; for an observer with an eye
-/// it is converted to the luminance contrast of its display. A target in motion is judged at its true place, without
-/// the mean lag of time constant and exposure, and each row at its time, as in dynamic_trials().
+/// it is converted to the luminance contrast of its display. A target in motion is judged at its true position, without
+/// the mean lag of time constant and exposure, and each row at the time at which it is read, as in dynamic_trials().
 ///
 /// Stages receive rounded and clipped counts: of the window and its surround, or of the whole picture if a stage needs
 /// it. Internal noise is relative to the contrast of a view in the judged pictures, and the observer enlarges the noise

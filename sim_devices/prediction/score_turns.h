@@ -12,7 +12,7 @@
 namespace todbench {
 
 /// Turns and mirrors noise after its projection. Turned noise has the same scores, exchanged between the templates. The
-/// four triangles at a square of places allow eight turns; a bank without this symmetry allows only the unchanged
+/// four triangles at a square of positions allow eight turns; a bank without this symmetry allows only the unchanged
 /// noise. One thread at a time.
 class ScoreTurns {
  public:

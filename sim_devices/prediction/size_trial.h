@@ -26,7 +26,7 @@ struct Proportion {
 
 /// Orientations that are shown.
 enum class ShownOrientations {
-  as_needed,  ///< one represents all four if no effect depends on direction
+  as_needed,  ///< one orientation represents all four if no effect depends on direction
   all,        ///< for draw-by-draw comparisons of conditions if some of them need all four
 };
 
@@ -47,7 +47,7 @@ struct TrialConditions {
 /// One contrast of a camera whose counts are too coarse or too few for this contrast.
 struct PixelContrast {
   double scene_k = 0;     ///< true contrast, triangle minus surround
-  double seen_k = 0;      ///< reading of the camera, which the observer divides by
+  double seen_k = 0;      ///< reading of the camera, by which the observer divides
   double noise_k = 0;     ///< white noise of a sample before display and rounding, averaged over exposures
   double internal_k = 0;  ///< white noise of the observer
   double background_k = 300;
@@ -97,7 +97,7 @@ class SizeTrial {
   void add_eye_gram(double noise, double eye_sd, std::array<std::array<double, 4>, 4>& gram) const;
   struct Response {
     int truth = 0;              ///< the alternative that is shown
-    int place = 0;              ///< search place next to the true position
+    int place = 0;              ///< search position next to the true position
     std::vector<float> patch;   ///< samples; only with dead detectors or by_pixels
     std::vector<float> scores;  ///< scores of all templates
     cv::Mat1f before_display;   ///< samples with a margin for the display's taps; only with by_pixels
@@ -133,7 +133,7 @@ class SizeTrial {
   std::vector<double> white_taps_;   ///< for the sum of sensor's and internal noise; empty without display
   double white_ratio_ = -1;          ///< ratio to which white_taps_ belong
   int places_of_dance_ = 1;          ///< per phase
-  std::vector<Response> responses_;  ///< by orientation shown, place of the dance and phase
+  std::vector<Response> responses_;  ///< by orientation shown, position of the dance and phase
   ScoreTurns turns_;
   std::vector<std::vector<std::uint32_t>> phase_group_;  ///< responses by group; its phases lie evenly in the pixel
   std::vector<std::uint32_t> every_response_;

@@ -12,9 +12,9 @@ namespace todbench {
 /// time of the picture.
 [[nodiscard]] cv::Point2d readout_slope(const SensorSpec& spec, SceneMotion motion);
 
-/// Returns the place at which sequential readout shows a point. `place` is its place if all rows sample together with
-/// `middle_row`. The change is a shear along the rows and a stretch across them. In pitches or samples. A slope of 0
-/// returns the place bit for bit.
+/// Returns the position of a point in a picture with sequential readout. `place`: position of the point if all rows
+/// sample together with `middle_row`. The change is a shear along the rows and a stretch across them. In pitches or
+/// samples. If the slope is 0, the position is returned bit for bit.
 [[nodiscard]] cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row);
 
 /// Returns the distance that the target moves between the two fields of an interlaced frame, in pitches. The even rows

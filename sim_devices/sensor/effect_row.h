@@ -52,11 +52,11 @@ struct Footprint {
 struct Transfer {
   TransferFunction (*factor)(const ChainScope& scope);
 };
-/// Moves the places of samples: returns the motion in pitches from one row of detectors to the next.
+/// Moves the positions of samples: returns the motion in pitches from one row of detectors to the next.
 struct Readout {
   cv::Point2d (*pitches_per_row)(const SensorSpec& spec, SceneMotion motion);
 };
-/// Moves the places of the whole scene, moving or not (effect_distortion.h).
+/// Moves the positions of the whole scene, moving or not (effect_distortion.h).
 struct Lens {};
 /// Moves the whole scene, differently in each exposure (effect_image_dance.h).
 struct Dance {};

@@ -14,7 +14,7 @@
 
 namespace todbench {
 
-/// Optics and detector of one sensor, for a scene with one motion. Shapes and places are in detector pitches of each
+/// Optics and detector of one sensor, for a scene with one motion. Shapes and positions are in detector pitches of each
 /// axis (on_detectors()). Thread-safe. Filter tables are computed once per lattice.
 class ImageChain {
  public:

@@ -70,7 +70,7 @@ struct PlateStageState {
 };
 
 /// Instrument that serves from creation to destruction. The table moves to a new position in a straight line at
-/// constant speed, starting from its present place.
+/// constant speed, starting from its present position.
 class PlateStage {
   template <typename T>
   struct Change {  ///< `from` until `since` + `duration_s`, then `to`

@@ -20,7 +20,7 @@ namespace todbench {
 /// Format of the GenICam description of the camera. Clients must support both formats.
 enum class U3vDescription { plain, zipped };
 
-/// Places where the camera states its identity.
+/// Location of the identity of the camera.
 enum class U3vIdentityNodes {
   present,  ///< in its bootstrap registers and in its description
   absent,   ///< in its bootstrap registers only
