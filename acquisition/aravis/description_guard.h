@@ -20,7 +20,7 @@ namespace todbench {
 
 /// Limits and progress of reading a description.
 struct DescriptionReading {
-  std::chrono::milliseconds patience{30'000};  ///< for the whole transfer
+  std::chrono::milliseconds patience{30'000};  ///< time limit of the whole transfer
   std::stop_token stop = {};
   std::function<void(std::string_view sentence)> on_progress = {};  ///< about once a second
 };

@@ -34,7 +34,7 @@ inline constexpr std::uint32_t gvcp_control_privilege_register = gev::control_pr
 
 /// Limits and progress of a long read.
 struct GvcpReading {
-  std::chrono::milliseconds patience{30'000};  ///< for the whole read
+  std::chrono::milliseconds patience{30'000};  ///< time limit of the whole read
   std::stop_token stop = {};
   std::function<void(std::uint64_t bytes)> on_bytes = {};  ///< bytes read so far; called on the reading thread
 };

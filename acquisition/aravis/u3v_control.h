@@ -21,10 +21,12 @@ struct UsbNames {
 
 /// Limits and progress of reading a description.
 struct U3vReading {
-  std::uint64_t most_bytes = 0;                ///< of the description as stored in the camera
-  std::chrono::milliseconds patience{30'000};  ///< for the whole read
+  std::uint64_t most_bytes = 0;                ///< maximum size of the description as stored in the camera
+  std::chrono::milliseconds patience{30'000};  ///< time limit of the whole read
   std::stop_token stop = {};
-  std::function<void(std::uint64_t done, std::uint64_t bytes)> on_bytes = {};  ///< on the reading thread
+  std::function<void(std::uint64_t done, std::uint64_t bytes)> on_bytes = {};  ///< called on the reading thread with
+                                                                               ///< the bytes read and the total number
+                                                                               ///< of bytes
 };
 
 /// A description as stored in the camera.

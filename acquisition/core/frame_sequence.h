@@ -22,7 +22,7 @@ enum class FrameNumberKind {
 /// Number and times of a frame at its arrival.
 struct FrameStamp {
   std::optional<std::uint64_t> number;  ///< empty: lost together with its packet
-  std::int64_t device_time_ns = 0;      ///< on the clock of the camera or driver; 0: none
+  std::int64_t device_time_ns = 0;      ///< time on the clock of the camera or driver; 0: none
   std::int64_t host_time_ns = 0;        ///< CLOCK_MONOTONIC at arrival
   bool may_pause = false;               ///< the camera corrects itself: it may be silent without losing exposures
   bool after_unread = false;  ///< other frames were lost since the last one because every buffer of the program was
@@ -65,7 +65,7 @@ class FrameSequence {
   /// Frame periods from the anchor to a frame, by each clock; empty if the clock states no time.
   struct Elapsed {
     std::optional<double> device, host;
-    double period_ns = 0;  ///< of the host's clock
+    double period_ns = 0;  ///< frame period on the host's clock
     /// Returns the number of periods from which to estimate a gap after a restart. It is taken from the camera's clock,
     /// unless the host's clock counts far more periods: then the camera's clock restarted too.
     [[nodiscard]] std::optional<double> best() const;

@@ -47,7 +47,7 @@ struct NumberingFaults {
 /// Options of IntegrityGate.
 struct IntegrityOptions {
   int width = 0, height = 0;          ///< expected geometry; 0: not checked
-  double max_saturated_share = 0.01;  ///< of all pixels
+  double max_saturated_share = 0.01;  ///< permitted share of saturated pixels
   /// False only for a simulated sensor without noise: its frames are equal by design and do not indicate a correction.
   bool reject_frozen = true;
 };

@@ -25,7 +25,7 @@ class MovedPicture {
 
  private:
   cv::Mat1w reference_;
-  std::optional<double> least_difference_;  ///< of pictures without displacement
+  std::optional<double> least_difference_;  ///< smallest difference of two pictures without displacement
   int compared_ = 0;
 };
 

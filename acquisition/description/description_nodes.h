@@ -59,7 +59,7 @@ struct DescriptionNode {
   NodeKind kind = NodeKind::other;
   std::vector<NodeReference> references;
   std::vector<std::size_t> parts;      ///< nodes inside a register or an enumeration that it reads
-  std::optional<std::size_t> inside;   ///< of an entry: the register that contains it
+  std::optional<std::size_t> inside;   ///< register that contains an entry
   std::vector<std::string> lengths;    ///< <Length>, as in the text
   std::vector<std::string> values;     ///< <Value>
   std::vector<std::string> formulas;   ///< Formula, FormulaTo, FormulaFrom

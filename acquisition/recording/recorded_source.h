@@ -17,7 +17,7 @@ struct RecordedFrame {
   cv::Mat1w counts;
   std::int64_t device_time_ns = 0;        ///< 0: not stated
   std::optional<std::uint64_t> sequence;  ///< empty: one more than that of the previous frame
-  std::int64_t host_time_ns = 0;          ///< on the recording host; 0: not stated
+  std::int64_t host_time_ns = 0;          ///< time on the recording host; 0: not stated
   FrameStatus status = FrameStatus::complete;
   Numbering numbering = Numbering::counted;
   CorrectionState correction = CorrectionState::unknown;

@@ -13,8 +13,8 @@ namespace todbench {
 struct TiffFormat {
   int significant_bits = 16;
   double frame_rate_hz = 0;            ///< 0: unknown
-  RadiometricScale scale = {};         ///< of the values in the file; uncalibrated unless stated
-  std::optional<ValueUnit> unit = {};  ///< of signed and floating-point values
+  RadiometricScale scale = {};         ///< scale of the values in the file; uncalibrated unless stated
+  std::optional<ValueUnit> unit = {};  ///< unit of signed and floating-point values
 };
 
 /// Returns whether the name of a file ends in .tif or .tiff, in upper or lower case.

@@ -30,7 +30,7 @@ enum class SeekModel {
 struct SeekGeometry {
   std::uint16_t product_id;
   int raw_width, raw_height;  ///< words
-  cv::Rect picture;           ///< in the raw frame
+  cv::Rect picture;           ///< area of the picture in the raw frame
   std::size_t kind_word, counter_word, temperature_word;
 
   [[nodiscard]] std::size_t frame_words() const {

@@ -104,7 +104,7 @@ class VideoDevice {
   VideoCapability capability_;
   std::vector<Mapping> buffers_;
   bool requested_ = false;
-  std::size_t image_bytes_ = 0;  ///< of the format, as the driver reports; 0: unknown
+  std::size_t image_bytes_ = 0;  ///< size of a frame of the format, as the driver reports it; 0: unknown
 };
 
 /// Returns the error of an ioctl: `disconnected` for a device that is gone, otherwise `otherwise`.

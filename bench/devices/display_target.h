@@ -34,13 +34,13 @@ struct DisplayTone {
 
 /// Options of display_target().
 struct DisplayTargetOptions {
-  std::vector<TargetPlate> plates;  ///< in identity mounting
+  std::vector<TargetPlate> plates;  ///< plates in identity mounting
   DisplayGeometry display{};
   double span_k = 1;  ///< contrast in kelvin that the camera observes between white and black, > 0
   DisplayTone tone{};
   std::vector<double> delta_t_k{};        ///< contrasts that will be requested, checked at opening
   std::chrono::milliseconds settle{200};  ///< settling time of the panel
-  std::string description = "display";    ///< for the report
+  std::string description = "display";    ///< description for the report
 };
 
 /// Creates a target that draws on a monitor. Contrasts are differences of light around half of the maximum. Background

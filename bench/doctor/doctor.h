@@ -48,7 +48,7 @@ struct SystemFacts {
   std::optional<std::string> firewall_rules;  ///< output of `nft list ruleset` and `iptables-save`
   std::optional<bool> clock_synchronised;     ///< according to the kernel
   std::optional<double> clock_step_s;         ///< change of the wall clock against the monotonic clock during the check
-  std::optional<std::int64_t> disk_free_bytes;  ///< on the disk of the sessions
+  std::optional<std::int64_t> disk_free_bytes;  ///< free space on the disk of the sessions
   std::optional<double> disk_bytes_per_s;       ///< write speed including flush
 };
 

@@ -39,7 +39,7 @@ struct PairedRatio {
 struct PackageResult {
   std::string name;
   std::vector<Trial> trials;
-  EndTrials at_ends{};              ///< for an observer with an eye: trials at both limits of the open parameters
+  EndTrials at_ends{};              ///< trials at both limits of the open parameters of an observer with an eye
   TodCurve curve;                   ///< empty if no fit was possible
   std::vector<PairedRatio> ratios;  ///< ratios to the result without a package; empty in the result without a package
   double frame_ms = 0;              ///< median processing time of its stages per frame

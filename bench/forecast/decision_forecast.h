@@ -59,13 +59,13 @@ struct CameraChance {
 
 /// One number of frames or phases of the plan, one rate of its ramp, or one half-width of its adaptive schedule.
 struct DecisionDesign {
-  std::vector<int> frames{};             ///< per presentation: one number for all contrasts, or one for each
-  int phases = 0;                        ///< per set-up and contrast
+  std::vector<int> frames{};             ///< frames per presentation: one number for all contrasts, or one for each
+  int phases = 0;                        ///< phases per set-up and contrast
   int contrast_frames = 0;               ///< frames of the measured contrast
-  std::optional<double> ramp_k_per_s{};  ///< of a ramp, which has no phases
+  std::optional<double> ramp_k_per_s{};  ///< rate of a ramp, which has no phases
   /// Half-width at which an adaptive schedule ends, in percent.
   std::optional<double> asked_percent{};
-  double bench_s = 0;                   ///< of the whole plan (laboratory_time())
+  double bench_s = 0;                   ///< bench time of the whole plan (laboratory_time())
   double half_width_percent = 0;        ///< expected half-width of the trials at the contrast of the limit
   double deciding_percent = 0;          ///< expected half-width including the stated rows
   bool planned = false;                 ///< true for the plan itself

@@ -13,13 +13,13 @@ struct GradedDesignFigures {
   double pattern_share = 0;  ///< share of the sensor's fixed pattern in the same variance, part of sensor_share
   double noise = 0;          ///< noise that decides an answer at the threshold, divided by the contrast
   double size_pitch = 4;     ///< size of the triangle at the threshold, in pitches
-  int frames = 1;            ///< per presentation
+  int frames = 1;            ///< frames per presentation
   int draws = 32;            ///< draws of the observer's noise, per frame
   int set_ups = 8;           ///< plates times mountings
   /// Effective number of set-ups, from their shares of the information: (sum)^2 / sum of squares; 0: equal shares. It
   /// determines whether set-ups are the clusters of the interval (clustered_variance.h).
   double informative_set_ups = 0;
-  int presentations = 96;        ///< per contrast
+  int presentations = 96;        ///< presentations per contrast
   double noise_correlation = 0;  ///< lag-1 correlation of the sensor's temporal noise, 0 to 1
   double frames_between = 0;     ///< frames between two presentations
 };

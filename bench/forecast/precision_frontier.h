@@ -13,7 +13,7 @@ namespace todbench {
 /// Variant of the plan with other answers.
 struct PrecisionChoice {
   AnswerKind answers = AnswerKind::binary;
-  std::vector<int> frames{1};  ///< per presentation: one number for all contrasts, or one for each
+  std::vector<int> frames{1};  ///< frames per presentation: one number for all contrasts, or one for each
   std::vector<ContrastPrediction> contrasts{};
   std::optional<double> half_width_percent{};  ///< half of the 95 % interval of S75, the largest over the contrasts
   double bench_s = 0;                          ///< time on the bench alone; 0 without a camera

@@ -20,7 +20,7 @@ struct ContrastPrediction {
   /// % of runs do not exceed. For an adaptive schedule, the requested half-width, or the half-width that its cap
   /// allows. Empty: not identified.
   std::optional<double> uncertainty_percent;
-  double trials = 0;  ///< of the simulation
+  double trials = 0;  ///< number of trials of the simulation
   /// Expected standard error of ln S75, without the margin for unlucky runs of `uncertainty_percent`; 0: not
   /// identified.
   double se_ln_s75 = 0;

@@ -34,7 +34,7 @@ struct ChartPoint {
   double ewma = 0, ewma_limit = 0;
   double cusum_up = 0, cusum_down = 0;
   bool in_reference = false;
-  bool signal = false;  ///< beyond a limit of either chart
+  bool signal = false;  ///< the value is beyond a limit of either chart
 };
 
 /// Charts of one measure.

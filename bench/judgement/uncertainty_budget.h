@@ -24,7 +24,7 @@ struct UncertaintyBudget {
 
 /// Contribution of a row.
 struct BudgetShare {
-  double standard_uncertainty = 0;  ///< in the unit of the row
+  double standard_uncertainty = 0;  ///< standard uncertainty in the unit of the row
   double contribution = 0;          ///< absolute sensitivity times standard_uncertainty, in the unit of the result
   double share_percent = 0;         ///< share of the variance
 };

@@ -18,7 +18,7 @@ struct AtmosphereRequest {
   SpectralBand band{};                ///< band of the camera
   std::string haze = "rural-23km";    ///< one of haze_names(); shipped table only
   double weight_temperature_k = 300;  ///< temperature of the weight dL/dT, for air given as a spectrum
-  double extinction_per_km = 0;       ///< for "beer-lambert" only
+  double extinction_per_km = 0;       ///< extinction coefficient for "beer-lambert"; otherwise not used
 };
 
 /// Air path of a range prediction, with its origin.

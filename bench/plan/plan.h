@@ -239,7 +239,7 @@ inline constexpr int least_fleet_units = 10;
 struct FleetRow {
   std::string measure{fleet_acuity};
   std::optional<double> delta_t_k{};  ///< acuity only
-  double mean = 0;                    ///< in the unit of the measure; geometric mean for an acuity
+  double mean = 0;                    ///< mean in the unit of the measure; geometric mean for an acuity
   double sd = 0;                      ///< standard deviation of true values in that unit; of ln acuity for an acuity
   double u = 0;                       ///< standard uncertainty of one value on the scale of sd; 0: negligible
   int units = 0;
@@ -444,7 +444,8 @@ inline constexpr std::array measure_keys{MeasureKey{"noise", &MeasuresPlan::nois
 /// Section [motion]: passes of a plate on a moving stage, for `todbench dynamic PLAN`.
 struct MotionPlan {
   std::vector<double> speeds_mrad_s{10, 30};  ///< 0 is always included
-  int passes = 8;                             ///< per plate, mounting, contrast and speed; right and left in turn
+  int passes = 8;                             ///< passes per plate, mounting, contrast and speed, alternately to the
+                                              ///< right and to the left
   int frames = 8;
   int lead_frames = 5;  ///< frames of motion before the first frame that is used
   PlaceSource places = PlaceSource::triangles;

@@ -18,7 +18,7 @@ namespace todbench {
 
 /// Line of the form in the window; without a label the key is not shown.
 struct FormLine {
-  std::string_view label{};        ///< without unit
+  std::string_view label{};        ///< label without unit
   std::string_view object_name{};  ///< name of the widget
   /// Repeated section only: path of the list of numbers whose elements are the values of the first key. The other keys
   /// become columns next to that list. If empty, the rows form a table of their own with names and numbers.

@@ -38,7 +38,7 @@ struct QuantityLimit {
 struct Quantity {
   std::string_view name;        ///< as in measures.json, without a position
   std::string_view unit;        ///< "1" for ratios and numbers of objects
-  std::string_view title;       ///< in reports
+  std::string_view title;       ///< title in reports
   std::string_view definition;  ///< one sentence, with the source of a published method
   /// Keys of [measures] that the quantity requires; empty: none.
   std::string_view measure{}, second_measure{};

@@ -64,7 +64,7 @@ struct ReportData {
   double air_temperature_c = 20;  ///< air temperature of the plan
   std::optional<ViewedDisplay> display{};  ///< display of the plan; empty: none
   std::string target;                      ///< instruments with serial numbers
-  std::vector<TargetPlate> plates;         ///< in identity mounting
+  std::vector<TargetPlate> plates;         ///< plates in identity mounting
   std::vector<SetUpRecord> set_ups;
   std::vector<Presentation> presentations;  ///< presentations of the camera, or of the simulation without a camera
   std::string observer;                     ///< name and version

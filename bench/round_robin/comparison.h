@@ -83,7 +83,7 @@ struct OutlyingResult {
 struct RoundRobin {
   std::vector<ItemComparison> items;
   std::vector<LaboratorySummary> laboratories;  ///< by name
-  std::vector<OutlyingResult> outlying;         ///< in the order in which they were found
+  std::vector<OutlyingResult> outlying;         ///< outlying results in the order in which they were found
   /// True if several laboratories are outlying. Reference values and estimates then come from all results, because the
   /// agreement of the other laboratories is a consequence of the selection.
   bool reference_from_all = false;

@@ -49,7 +49,7 @@ struct Alignment {
   Polygon plate_px;                      ///< the corners of the plate
   double expected_blur_px = 0;           ///< edge blur of the simulated sensor; 0: unknown
   double drift_px = 0;                   ///< drift of the centre of the plate since the first look
-  double temporal_noise_k = 0;           ///< per pixel
+  double temporal_noise_k = 0;           ///< temporal noise of a pixel
   std::vector<AlignmentRemark> remarks;  ///< empty: ready to measure
 };
 

@@ -24,7 +24,7 @@ namespace todbench {
 
 /// Answers of a run as they are fitted, and the function over contrast if each presentation has its own contrast.
 struct FittedTrials {
-  std::vector<Trial> own{};                  ///< at the set contrasts
+  std::vector<Trial> own{};                  ///< answers at the set contrasts
   std::optional<ContrastSurface> surface{};  ///< empty: contrasts were settled
   std::optional<Error> failed{};
 

@@ -26,7 +26,7 @@ namespace todbench {
 struct MeasuredRun {
   MeasurementResult result;
   MeasurementOptions options;
-  std::map<double, ProportionTable> functions{};  ///< for the stopping rule of an adaptive schedule
+  std::map<double, ProportionTable> functions{};  ///< functions for the stopping rule of an adaptive schedule
   std::vector<ChangedSetting> changed{};          ///< settings that changed between opening and last frame
   double measures_s = 0;                          ///< duration of the physical measures; 0: no measures
 };

@@ -18,7 +18,7 @@ namespace todbench {
 /// MRTD to simulate.
 struct MrtdStudyTask {
   VirtualMrtdTask trial;      ///< experiment; its axis is one of `axes`
-  std::vector<BarAxis> axes;  ///< at least one
+  std::vector<BarAxis> axes;  ///< axes to test, at least one
   FormulaConditions formula{};
   Atmosphere air{};
   double range_m = 0;  ///< from the camera to the bars; 0: no air

@@ -109,7 +109,8 @@ struct PersonShare {
 /// Evaluation of the answers. The 75 % values are crossings as in Crossing75. Their intervals come from resampling the
 /// answers of every condition.
 struct PersonResult {
-  std::vector<PersonShare> conditions;                   ///< in their order
+  std::vector<PersonShare> conditions;                   ///< share of correct answers in each condition, in the order
+                                                         ///< of the conditions
   std::vector<std::vector<std::vector<int>>> confusion;  ///< [condition][shown][answered]
   SetCriterion r75_m;                                    ///< identify
   /// Bars: threshold of every frequency. For `bars_resolved` empty if the person reported bars in more than a quarter

@@ -39,7 +39,7 @@ struct ScenePicturesTask {
 /// One stage. All stages of a task show the same field.
 struct SceneStage {
   std::string name;         ///< name of its files: "1-scene"
-  std::string title, note;  ///< for people
+  std::string title, note;  ///< title and remark for people
   cv::Mat1f kelvin;         ///< equivalent kelvin above the background
   double pixels_per_pitch = 1;
 };

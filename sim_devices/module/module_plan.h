@@ -30,7 +30,7 @@ inline constexpr std::array all_module_places{ModulePlace::picture, ModulePlace:
 /// [[module]] of plans and sensor files. `module_ranges` states the ranges.
 struct ModulePlan {
   ModulePlace place = ModulePlace::picture;
-  std::string command;                            ///< for a shell, run in the folder of the caller
+  std::string command;                            ///< command for a shell, run in the folder of the caller
   std::string version;                            ///< command whose first line of output is recorded; empty: none
   std::map<std::string, std::string> parameters;  ///< sent in the header
   int limit_ms = 5000;                            ///< time limit for one output, in ms

@@ -28,7 +28,7 @@ enum class ModuleNetwork {
 
 /// Command and limits of a module.
 struct ModuleOptions {
-  std::string command{};      ///< for a shell
+  std::string command{};      ///< command for a shell
   std::string header = "{}";  ///< JSON that is sent first, as a byte array
   /// Time limit for one output. For the first output the limit includes the start of the process.
   std::chrono::milliseconds limit{5000};
@@ -79,7 +79,7 @@ class ModuleProcess {
   std::optional<int> exit_code_;
   Descriptor in_, out_, err_;  ///< our ends of its standard streams
   std::string to_write_, read_, errors_, error_line_;
-  std::vector<char> buffer_ = std::vector<char>(1 << 20);  ///< for reading
+  std::vector<char> buffer_ = std::vector<char>(1 << 20);  ///< buffer for reading
 };
 
 }  // namespace todbench

@@ -13,7 +13,7 @@ namespace todbench {
 /// All patterns fill the same square, of side 3.5 / f.
 enum class BarPattern {
   four_bars,  ///< bars of width 1 / (2 f), spaces of the same width, aspect ratio 7 : 1
-  five_bars,  ///< in the same square, at 9/7 of the frequency (Bijl and Valeton)
+  five_bars,  ///< five bars in the same square, at 9/7 of the frequency (Bijl and Valeton)
   uniform     ///< the square at 4/7 of the contrast, which gives the same mean
 };
 

@@ -22,11 +22,11 @@ struct DirectPoint {
   /// Contrast by which the observer divides: the set contrast, or the reading of the camera if its counts are too
   /// coarse or too few.
   double seen_delta_t_k = 0;
-  double s75_pitch = 0;  ///< in detector pitches
+  double s75_pitch = 0;  ///< 75 % size in detector pitches
   double standard_error_pitch = 0;
   std::vector<double> sizes_pitch;
   std::vector<double> proportion_correct;
-  int noise_draws = 0;  ///< per size
+  int noise_draws = 0;  ///< draws of noise for each size
 };
 
 /// Options of the estimate.

@@ -23,7 +23,7 @@ struct DynamicTrialOptions {
   std::vector<double> sizes_pitch;    ///< each is shown four times per picture, once in each orientation
   std::vector<double> speeds_mrad_s;  ///< along x, at least 0; passes alternate between right and left
   int passes = 24;                    ///< each with its own sampling phase; at least 2
-  int frames = 8;                     ///< per pass, at least 1
+  int frames = 8;                     ///< frames of a pass, at least 1
   Accuracy accuracy;
   std::uint64_t seed = 1;
   /// Stages behind the camera, made anew for every pass; empty: none. Before the first frame of a pass they receive as

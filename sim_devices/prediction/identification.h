@@ -55,7 +55,8 @@ struct IdentificationTask {
   std::vector<IdentificationRange> ranges;                         ///< ranges with their air
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;  ///< pictures that the observer uses as templates
   TargetCues cues = TargetCues::all;                               ///< differences between the targets
-  int decisions = 2000;                                            ///< per target and range, all aspects together
+  int decisions = 2000;                                            ///< decisions per target and range, all aspects
+                                                                   ///< together
   /// Motion of the targets in the picture: they move, or the camera turns. The effects must be planned for it.
   SceneMotion motion{};
   /// Use of the frames of a pass, as for a moving triangle; internal noise is drawn once per decision.
@@ -92,7 +93,7 @@ struct IdentificationPoint {
   std::vector<double> by_draw;
   /// Proportion correct of an observer with an eye, for the worst and the best values of its open parameters.
   std::optional<std::pair<double, double>> spread{};
-  std::optional<JudgedPictures> judged{};  ///< with stages
+  std::optional<JudgedPictures> judged{};  ///< contrast and noise behind the stages; empty without stages
   [[nodiscard]] double proportion() const;
   [[nodiscard]] double standard_error() const;
 };
@@ -101,7 +102,8 @@ struct IdentificationPoint {
 struct IdentificationEffort {
   double decisions = 0;      ///< all targets and ranges
   double largest_bytes = 0;  ///< memory of the templates of one range
-  double processor_s = 0;    ///< on one core with about 2 x 10^10 template samples a second, to a factor of two
+  double processor_s = 0;    ///< time on one core with about 2 x 10^10 template samples a second; accurate to a factor
+                             ///< of two
 };
 /// Predicts the effort without computing. Errors: those of identify() about the targets and their size.
 [[nodiscard]] Result<IdentificationEffort> planned_effort(const IdentificationTask& task);

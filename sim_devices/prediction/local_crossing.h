@@ -12,7 +12,7 @@ namespace todbench {
 /// Point in ln size at which the local quadratic in ln((P - 0.25) / (1 - P)) equals ln 2. This transform of the
 /// proportion correct P is nearly straight in ln size.
 struct Crossing {
-  double x = 0, standard_error = 0;  ///< in ln size, like `xs`
+  double x = 0, standard_error = 0;  ///< position of the crossing and its standard error, in ln size
 };
 
 /// Finds the crossing. `xs`: ln size, increasing in equal steps, at least four, around the crossing. A size at a

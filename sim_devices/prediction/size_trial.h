@@ -38,7 +38,7 @@ struct TrialConditions {
   SensorSpec sensor;  ///< as planned
   SceneMotion motion{};
   int samples_per_pitch = 1;
-  int phases_per_axis = 8;  ///< per pitch
+  int phases_per_axis = 8;  ///< sampling phases per pitch along each axis
   double search_step_samples = 0.125;
   ShownOrientations orientations = ShownOrientations::as_needed;
   bool by_pixels = false;  ///< required for pixel_proportion()
@@ -130,18 +130,18 @@ class SizeTrial {
   RandomStream stream_;
   std::vector<const stage::Noise*> coloured_stages_;  ///< coloured noise of this sensor
   std::vector<double> display_taps_;                  ///< empty for sample-and-hold
-  std::vector<double> white_taps_;   ///< for the sum of sensor's and internal noise; empty without display
+  std::vector<double> white_taps_;   ///< taps for the sum of the noise of sensor and observer; empty without display
   double white_ratio_ = -1;          ///< ratio to which white_taps_ belong
-  int places_of_dance_ = 1;          ///< per phase
+  int places_of_dance_ = 1;          ///< displacements by image dance for each phase
   std::vector<Response> responses_;  ///< by orientation shown, position of the dance and phase
   ScoreTurns turns_;
   std::vector<std::vector<std::uint32_t>> phase_group_;  ///< responses by group; its phases lie evenly in the pixel
   std::vector<std::uint32_t> every_response_;
   std::vector<float> turned_;                          ///< scratch
-  std::vector<std::vector<float>> noise_;              ///< per draw: projected unit white noise
-  std::vector<std::vector<float>> eye_;                ///< per draw: scores of the eye's noise of sd 1
+  std::vector<std::vector<float>> noise_;              ///< projected white noise of sd 1, by draw
+  std::vector<std::vector<float>> eye_;                ///< scores of the noise of the eye with sd 1, by draw
   std::vector<float> mixed_;                           ///< scratch
-  std::vector<std::vector<float>> coloured_;           ///< per draw: projected coloured noise in kelvin
+  std::vector<std::vector<float>> coloured_;           ///< projected coloured noise in kelvin, by draw
   std::map<double, std::vector<double>> pixel_draws_;  ///< by contrast of the scene: proportion of each draw
 };
 

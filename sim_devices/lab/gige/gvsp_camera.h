@@ -44,7 +44,7 @@ struct GvspCameraConfig {
   int nuc_freeze_frames = 25;            ///< frames for which the last picture is repeated after a correction: 0.5 s
   unsigned automatic_nuc_frames = 3600;  ///< frames between automatic corrections
   std::optional<PixelFormat> only_format{};           ///< replaces the formats of the model
-  std::chrono::milliseconds heartbeat_timeout{3000};  ///< at power-up
+  std::chrono::milliseconds heartbeat_timeout{3000};  ///< heartbeat timeout at power-up
   std::uint16_t first_block_id = 65400;               ///< the 16-bit id wraps from 65535 to 1
   int row_padding_bytes = 0;                          ///< sent after every row, counted in the payload size
   int image_padding_bytes = 0;                        ///< sent after the last row, counted in the payload size
