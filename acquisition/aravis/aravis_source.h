@@ -22,7 +22,7 @@ namespace todbench {
 /// An open GigE Vision or USB3 Vision camera. One thread at a time, except stop().
 class AravisSource : public FrameSource {
  public:
-  /// Opens a source on a camera. `device_address`: IPv4 address of a GigE camera, empty for USB. `info` holds the
+  /// Opens a source on a camera. `device_address`: IPv4 address of a GigE camera, empty for USB. `info` contains the
   /// identity; the rest is read from the camera. Precondition: no other reference to the camera's device exists.
   [[nodiscard]] static Result<std::unique_ptr<FrameSource>> create(GObjectPtr<ArvCamera> camera, AravisOptions options,
                                                                    SourceInfo info, std::string device_address);
@@ -98,7 +98,7 @@ class AravisSource : public FrameSource {
   std::vector<std::string> setup_warnings_;
   std::string socket_buffer_bytes_, socket_buffer_warning_;
   CameraFamily family_;
-  bool bytes_swapped_ = false;  ///< the bytes are in the opposite order of the order that the camera states
+  bool bytes_swapped_ = false;  ///< the byte order is opposite to the order that the camera states
   bool corrections_taken_over_ = false;
   std::optional<double> stated_kelvin_per_count_, stated_offset_k_;
   std::optional<cv::Size> stated_frame_;  ///< stated by the user if the camera states a wrong size

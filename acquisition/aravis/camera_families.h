@@ -31,7 +31,7 @@ struct CameraFamily {
   std::string nuc_mode;                    ///< enumeration that controls the time of corrections; empty: unknown
   std::vector<std::string> nuc_commanded;  ///< entries of nuc_mode that restrict corrections to commands, best first
   std::vector<std::string> nuc_commands;   ///< commands of a correction, best first
-  std::vector<std::string> frame_rate;     ///< features that hold the frame rate, best first
+  std::vector<std::string> frame_rate;     ///< features that contain the frame rate, best first
   std::string test_pattern, test_ramp;     ///< enumeration and its entry; the ramp has the count x at column x
   bool high_byte_first = false;            ///< Mono16 arrives with the high byte first, but no feature states this
 };

@@ -61,7 +61,7 @@ enum class SeekRequest : std::uint8_t {
   get_factory_settings = 0x58,
 };
 
-/// One control transfer. `data` holds the bytes to send; in a reading request only its size is used.
+/// One control transfer. `data` contains the bytes to send; in a reading request only its size is used.
 struct SeekTransfer {
   SeekRequest request;
   std::vector<std::uint8_t> data;

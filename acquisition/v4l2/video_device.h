@@ -31,7 +31,7 @@ struct VideoBuffer {
   std::uint32_t sequence = 0;
   std::int64_t time_ns = 0;  ///< 0: none
   bool damaged = false;      ///< V4L2_BUF_FLAG_ERROR, or an empty buffer
-  bool oversized = false;    ///< states more bytes than its buffer or the format holds
+  bool oversized = false;    ///< states more bytes than its buffer or the format can contain
 };
 
 /// An open node. Errors of every method: `disconnected` if the device is gone (ENODEV), otherwise as stated. Not

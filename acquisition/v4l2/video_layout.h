@@ -42,7 +42,7 @@ struct VideoLayout {
   std::size_t filler_bytes = 0;  ///< after the last row, from a driver that transfers whole pages
   std::string pixel_format;      ///< PFNC name of the counts
   int significant_bits = 16;
-  cv::Rect picture;        ///< rows that hold counts
+  cv::Rect picture;        ///< rows that contain counts
   int telemetry_rows = 0;  ///< telemetry rows of a Lepton below the picture
   /// Rows without picture, all above or all below it. `picture` then begins at the first row that may belong to either.
   /// Their position is determined in each frame: they differ more from their neighbours than rows of the picture do.

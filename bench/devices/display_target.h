@@ -61,9 +61,9 @@ struct DisplayLevels {
 [[nodiscard]] DisplayLevels display_levels(double contrast, const DisplayTone& tone);
 
 /// Creates the target together with the program that shows its pictures. First shows a flat picture at half the light.
-/// Errors, before a plate is drawn: `invalid_input` (a centred plate leaves the display, a contrast cannot be shown, or
-/// the picture is larger than the screen), `not_found` (the program cannot be started, or ends because there is no
-/// screen); otherwise the message of the program.
+/// Errors, before a plate is drawn: `invalid_input` (a centred plate does not fit on the display, a contrast cannot be
+/// shown, or the picture is larger than the screen), `not_found` (the program cannot be started, or ends because there
+/// is no screen); otherwise the message of the program.
 [[nodiscard]] Result<std::unique_ptr<Target>> open_display_target(DisplayTargetOptions options,
                                                                   const std::string& command);
 

@@ -31,7 +31,7 @@ struct BlindSource {
 struct BlindPatch {
   std::size_t source = 0;
   JudgedTrial judged;  ///< patch, cut to the field that all sources have in common
-  /// Samples per pixel and axis. A pixel has the same size on the screen for every source, whatever its number of
+  /// Samples per pixel and axis. A pixel has the same size on the screen for every source, regardless of its number of
   /// samples.
   int samples_per_pixel = 1;
 };

@@ -40,7 +40,7 @@ void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Pla
 /// Returns the frames of the measured contrast with which presentations decide a limit for a camera of the predicted
 /// acuity: the scatter of the contrast then causes at most half of the half-width that decides. `floor_ln`: half-width
 /// of the stated rows. Empty if presentations decide with the plan's number, if the stated rows alone prevent the
-/// decision, or if 64 times as many frames are not enough. Errors: those of predict_plan().
+/// decision, or if 64 times this number of frames is not enough. Errors: those of predict_plan().
 [[nodiscard]] Result<std::optional<int>> deciding_contrast_frames(const Plan& plan, const ExperimentInputs& inputs,
                                                                   const ContrastPrediction& contrast,
                                                                   double least_acuity_per_mrad, double floor_ln);

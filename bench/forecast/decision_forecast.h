@@ -115,9 +115,9 @@ struct DecisionForecast {
 /// Errors: those of curve_uncertainty().
 [[nodiscard]] Result<std::vector<double>> floors_ln(const Plan& plan, const PlanPrediction& prediction);
 
-/// Returns a text about the limits that the stated rows of the budget leave open: even without scatter of the trials, a
-/// decision on them has a probability below `probability`. States the distance of the predicted acuity from each limit.
-/// Empty if there is no such limit.
+/// Returns a text about the limits that cannot be decided because of the stated rows of the budget: even without
+/// scatter of the trials, a decision on them has a probability below `probability`. States the distance of the
+/// predicted acuity from each limit. Empty if there is no such limit.
 [[nodiscard]] std::string open_by_budget(const Plan& plan, const std::vector<ContrastPrediction>& contrasts,
                                          const CurveUncertainty* budget, double probability);
 

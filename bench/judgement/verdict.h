@@ -136,8 +136,8 @@ struct JudgementInput {
   JudgedWhen judged = JudgedWhen::at_end_of_run;
   const CurveUncertainty* uncertainty = nullptr;  ///< uncertainty of the curve; null: the plan has no budget
   /// Transmittance of the bench, if camera and target both state the contrast in kelvin. Then, without a budget, a
-  /// limit on an acuity is judged with an interval that holds for both contrasts, set and observed, if they differ by
-  /// more than two standard errors. Empty: the contrasts are not compared.
+  /// limit on an acuity is judged with an interval that is valid for both contrasts, set and observed, if they differ
+  /// by more than two standard errors. Empty: the contrasts are not compared.
   std::optional<double> air_transmittance{};
   /// Measures of the camera, or of the simulated sensor alone; empty: none measured.
   std::optional<std::vector<MeasuredQuantity>> measures{};

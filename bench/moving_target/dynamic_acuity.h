@@ -22,7 +22,7 @@ struct DynamicPoint {
   std::optional<double> ratio;
   Interval ratio_ci95;
   /// S75 and ratio over the open parameters of an observer with an eye (open_parameters.h); empty without an eye, or if
-  /// the observer or one of these limits gives no value. Not confidence intervals.
+  /// there is no value for the observer or at one of these limits. Not confidence intervals.
   std::optional<std::pair<double, double>> s75_spread_mrad{}, ratio_spread{};
 };
 /// Results at one speed.

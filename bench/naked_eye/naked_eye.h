@@ -28,8 +28,8 @@ struct NakedEyeTask {
 [[nodiscard]] Result<void> validate(const NakedEyeTask& task);
 
 /// Returns a display whose luminance is proportional to the level and on which 1 K is a luminance contrast of 1. It
-/// describes what the person sees, because pictures are drawn with the measured luminances of the levels. Precondition:
-/// validate() of the display succeeds.
+/// describes the picture that the person sees, because pictures are drawn with the measured luminances of the levels.
+/// Precondition: validate() of the display succeeds.
 [[nodiscard]] ViewedDisplay linear_display(const ViewedDisplay& display);
 
 /// Returns the model that looks at this display. Precondition: validate() of the task succeeds.

@@ -218,7 +218,7 @@ struct MeasureLimit {
   bool operator==(const MeasureLimit&) const = default;
 };
 
-/// Name of the zone that covers the whole frame, whatever its stated area.
+/// Name of the zone that covers the whole frame, regardless of its stated area.
 inline constexpr std::string_view whole_frame_zone = "whole";
 
 /// Row of [[limits.zone]]: largest number of defective pixels in a part of the frame.

@@ -36,13 +36,13 @@ struct KeyOption {
   OptionOf of = OptionOf::simulations;
 };
 
-/// Access to the member that holds the value. `row` is the row of a repeated section, otherwise 0.
+/// Access to the member that contains the value. `row` is the row of a repeated section, otherwise 0.
 struct KeyPlace {
   std::function<KeyValue(const Plan&, std::size_t row)> get;
   std::function<void(Plan&, std::size_t row, const KeyValue&)> set;
 };
 
-/// Value that an absent key takes from elsewhere in the plan instead of its default.
+/// Value of an absent key that comes from another part of the plan instead of the default.
 struct KeyFallback {
   std::string_view words{};  ///< text for documents: "value of the sensor"
   std::function<KeyValue(const Plan&, const PlanParts&)> value{};

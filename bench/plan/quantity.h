@@ -27,7 +27,7 @@ enum class StatedUncertainty {
   distance,      ///< uncertainty of an angle per pixel
 };
 
-/// Demand that a limit on a quantity makes.
+/// Demand that corresponds to a limit on a quantity.
 struct QuantityLimit {
   std::string_view demand;  ///< name in verdict.json; empty: the quantity cannot have this limit
   std::string_view words;   ///< text in front of the number of the limit

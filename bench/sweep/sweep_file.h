@@ -55,8 +55,8 @@ struct SweepFile {
   std::size_t sample_count = 0;
   std::uint64_t sample_seed = 1;
   /// For a Sobol sample. If true, every draw contains two independent points A and B and, for each parameter, the point
-  /// A with this parameter taken from B. This gives total indices (Saltelli et al. 2010) with sample_count (ranges + 2)
-  /// combinations.
+  /// A with this parameter taken from B. Total indices (Saltelli et al. 2010) are then computed from sample_count
+  /// (ranges + 2) combinations.
   bool sample_total = false;
   std::size_t repeats = 1;
   std::vector<Constraint> where;

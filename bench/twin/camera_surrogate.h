@@ -37,7 +37,7 @@ class CameraSurrogate {
   /// variance of a pixel.
   [[nodiscard]] std::optional<ExperimentInputs> lent() const;
   /// Returns whether the pictures of the camera contradict the optical model of the twin for all its parameters, or
-  /// whether the estimated optics do not give a valid sensor.
+  /// whether no valid sensor has the estimated optics.
   [[nodiscard]] bool refused() const;
   /// Returns whether the frames could not be compared with the twin's optics: contrasts in grey levels, a program in
   /// the twin, or no triangle large enough.

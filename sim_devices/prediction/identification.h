@@ -33,7 +33,7 @@ struct IdentificationRange {
 enum class TemplateKnowledge {
   behind_camera,          ///< pictures behind this camera in this motion, as for people who learned from them
   behind_camera_at_rest,  ///< pictures behind this camera without motion
-  ideal                   ///< ideal pictures only: blur then makes targets resemble other targets
+  ideal                   ///< ideal pictures without blur; a blurred target can then resemble another target
 };
 /// Differences between the targets.
 enum class TargetCues {

@@ -23,7 +23,7 @@ class ScoreTurns {
   [[nodiscard]] std::size_t size() const { return turns_.size(); }
   /// Sets the scores of a draw, which must outlive the calls of turned().
   void begin(std::span<const float> scores);
-  /// Writes the scores after turn number `turn` to `out`, which has as many elements.
+  /// Writes the scores after turn number `turn` to `out`, which has the same number of elements.
   void turned(std::size_t turn, std::span<float> out) const;
 
  private:

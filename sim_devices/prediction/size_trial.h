@@ -72,8 +72,8 @@ class SizeTrial {
   [[nodiscard]] Proportion proportion(const WhiteNoise& white, double contrast_k, int draws);
 
   /// Returns the proportion correct with the counts of the sensor: every pixel of every trial is rounded and clipped.
-  /// Each draw is used in as many sampling phases as an axis has; the draws take all phases in turn. There are twice as
-  /// many phases as without rounding. Precondition: conditions.by_pixels.
+  /// Each draw is used in a number of sampling phases equal to the phases of one axis; successive draws use all phases
+  /// in turn. The number of phases is twice the number without rounding. Precondition: conditions.by_pixels.
   [[nodiscard]] Proportion pixel_proportion(const PixelContrast& contrast, int draws);
 
   /// Returns the proportion correct of an observer that knows the position (to half a search step) in white noise of sd

@@ -25,8 +25,8 @@ namespace todbench {
 void take_odd_rows(cv::Mat& picture, const cv::Mat& later, int samples_per_pitch);
 
 /// Draws an interlaced picture. The even rows show the scene half of the delay before the time of the picture, and the
-/// odd rows half of the delay after it. `draw` takes a displacement of the target, in pitches, and returns the picture
-/// of all rows at one time. If `between_fields` is 0, `draw` is called once.
+/// odd rows half of the delay after it. `draw` receives a displacement of the target, in pitches, and returns the
+/// picture of all rows at one time. If `between_fields` is 0, `draw` is called once.
 template <typename Draw>
 [[nodiscard]] auto in_fields(cv::Point2d between_fields, int samples_per_pitch, Draw draw) {
   if (between_fields == cv::Point2d(0, 0)) return draw(cv::Point2d(0, 0));

@@ -17,7 +17,7 @@ namespace todbench {
 enum class PixelFaultKind {
   stuck,     ///< shows one level for every scene
   hot,       ///< a fixed offset
-  noisy,     ///< more temporal noise than the others
+  noisy,     ///< more temporal noise than other detectors
   blinking,  ///< jumps between two levels
 };
 inline constexpr std::array pixel_fault_kinds{PixelFaultKind::stuck, PixelFaultKind::hot, PixelFaultKind::noisy,

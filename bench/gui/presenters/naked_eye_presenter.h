@@ -54,7 +54,7 @@ class NakedEyePresenter final : public QObject {
   [[nodiscard]] const QImage& picture() const { return screen_.picture(); }
   /// Returns the level around the picture, 0 to 255.
   [[nodiscard]] int background_level() const;
-  /// Returns the session with the answers so far; empty before the prediction is complete.
+  /// Returns the session with its answers; empty before the prediction is complete.
   [[nodiscard]] const std::optional<NakedEyeSession>& session() const { return session_; }
   /// Returns the folder of the experiment.
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }

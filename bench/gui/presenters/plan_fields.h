@@ -57,7 +57,7 @@ struct PlanField {
   std::vector<std::string> paths{};
   /// Returns the text of the line for a plan.
   std::function<QString(const Plan&)> shown{};
-  /// Sets a text in the plan. On an error returns a sentence and leaves the plan as it is.
+  /// Sets a text in the plan. On an error returns a sentence and does not change the plan.
   std::function<QString(Plan&, const QString&)> entered{};
   QString section{};  ///< heading of the lines with the same section
 };

@@ -29,7 +29,7 @@ struct VideoDriverQuirks {
 /// Camera that serves frames during its lifetime. The node is a regular file, so that buffers can be mapped. Therefore
 /// poll() on it is always ready, and a DQBUF without a frame waits for up to 10 ms before it returns EAGAIN. Otherwise
 /// the camera behaves like a driver. Buffers are filled in the order in which they were queued. An exposure without a
-/// free buffer is lost and leaves a gap in the sequence. A second program receives EBUSY while one streams. An
+/// free buffer is lost and causes a gap in the sequence. A second program receives EBUSY while one streams. An
 /// unplugged camera returns ENODEV, and udev announces its removal.
 ///
 /// The timestamps of the buffers (of unknown base, in the terms of V4L2) are times of the camera's clock, which
