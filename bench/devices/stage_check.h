@@ -22,9 +22,9 @@ struct StageMovement {
 /// standard errors. Shifts of a run reach 0.7 px: an error of 0.1 reduces the acuity by less than 0.2 %.
 inline constexpr double most_stage_deviation = 0.1;
 
-/// Opens camera and target of the plan, presents its first plate at its highest contrast in the centre, and moves the
-/// stage by one pixel to either side along x, then along y. Errors: `invalid_input` (no stage that sets positions),
-/// `calibration` (the pictures do not show the plate), those of open_bench() and measure().
+/// Opens camera and target of the plan and presents the first plate at the highest contrast in the centre. Then moves
+/// the stage by one pixel to either side, first along x and then along y. Errors: `invalid_input` (no stage that sets
+/// positions), `calibration` (the pictures do not show the plate), those of open_bench() and measure().
 [[nodiscard]] Result<StageMovement> check_stage_movement(const LoadedPlan& loaded, const SayProgress& on_progress,
                                                          std::stop_token stop);
 

@@ -55,8 +55,8 @@ struct GradedDesignFigures {
 
 /// Returns the variance of the ln ratio of camera and twin by common phases, divided by the variance of the same number
 /// of binary answers. The phases are common and cancel. The remaining terms are the noise of the camera's frames with
-/// its fixed pattern, the observer's noise, and the noise of the twin's answers, where each answer is the mean over
-/// `twin_draws` frames of its own. The variance does not contain the scatter of the effective contrast.
+/// its fixed pattern, the observer's noise, and the noise of the twin's answers. Each answer of the twin is the mean
+/// over `twin_draws` frames of its own. The variance does not contain the scatter of the effective contrast.
 [[nodiscard]] double paired_variance_ratio(const GradedDesignFigures& design, int twin_draws);
 
 /// Choices for the number of frames per presentation.

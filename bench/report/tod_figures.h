@@ -29,9 +29,10 @@ struct AnswersAtSize {
 [[nodiscard]] Interval wilson_interval(double correct, double total);
 
 /// Returns the 95 % interval of the proportion at a size. Binary answers: Wilson's interval, with all answers treated
-/// as independent. Graded answers scatter less than binomially, so their interval is m -+ t s over K presentations,
-/// limited to 0 and 1, with s^2 = K / (K - 1) sum (c - m n)^2 / N^2 for the ratio of sums m. The interval is open for
-/// fewer than two presentations, and wider than necessary if the effects of the phases in a set-up cancel.
+/// as independent. Graded answers scatter less than binomially. Their interval is therefore m -+ t s over K
+/// presentations, limited to 0 and 1, with s^2 = K / (K - 1) sum (c - m n)^2 / N^2 for the ratio of sums m. The
+/// interval is open for fewer than two presentations, and wider than necessary if the effects of the phases in a set-up
+/// cancel.
 [[nodiscard]] Interval proportion_interval(const AnswersAtSize& answers);
 
 /// Curve with its name in figures.

@@ -47,7 +47,7 @@ struct DirectEstimateOptions {
 
 /// Returns one point per contrast (kelvin, > 0). Noise is drawn once per size and shared by phases and contrasts. If a
 /// count exceeds the noise (rounds_coarsely()), or if the contrast reaches the lowest or highest count, the counts of
-/// every pixel are simulated with one projection for each draw and phase, which takes up to sixteen times as long. If
+/// every pixel are simulated, with one projection for each draw and phase. This takes up to sixteen times as long. If
 /// the accuracy requires a standard error, draws are added until it is met. Errors: `invalid_input` (the camera's
 /// reading of a contrast is 0; no size between 0.2 and 40 pitches brackets 75 %, so the contrast has no threshold; the
 /// required standard error needs more draws than Accuracy::max_noise_draws; the message states the reachable standard

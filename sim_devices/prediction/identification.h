@@ -111,8 +111,9 @@ struct IdentificationEffort {
 /// Returns one point per range, in the same order. Every target in every aspect is shown with each draw of sensor and
 /// internal noise, in one of 16 sampling phases that change from draw to draw. The template observer sets the internal
 /// noise and the enlargement of the sensor's noise. The contrast is dT_RSS behind the air; for an observer with an eye
-/// it is converted to the luminance contrast of its display. A target in motion is judged at its true position, without
-/// the mean lag of time constant and exposure, and each row at the time at which it is read, as in dynamic_trials().
+/// it is converted to the luminance contrast of its display. As in dynamic_trials(), a target in motion is judged at
+/// its true position, without the mean lag of time constant and exposure. Each row is judged at the time at which it is
+/// read.
 ///
 /// Stages receive rounded and clipped counts: of the window and its surround, or of the whole picture if a stage needs
 /// it. Internal noise is relative to the contrast of a view in the judged pictures, and the observer enlarges the noise

@@ -70,9 +70,9 @@ struct PlanPreview {
 };
 
 /// Computes the outlook, fast enough to follow a slider. If the plan has other numbers of phases than the forecast,
-/// ln(1 + uncertainty) is scaled with the square root of forecast phases / plan phases (not for an adaptive schedule),
-/// and the time of the simulation with plan phases / forecast phases. If `seen` is null, only counts and bench time are
-/// computed.
+/// ln(1 + uncertainty) is scaled with the square root of forecast phases / plan phases, except for an adaptive
+/// schedule. The time of the simulation is scaled with plan phases / forecast phases. If `seen` is null, only counts
+/// and bench time are computed.
 [[nodiscard]] PlanPreview outlook(const Plan& plan, const std::vector<TargetPlate>& plates, const PlanForecast* seen,
                                   double frame_rate_hz);
 
