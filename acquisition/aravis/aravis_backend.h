@@ -50,9 +50,9 @@ struct AravisOptions {
 /// Lists cameras by discovery (1 s on a network). Opens "gige:VENDOR-SERIAL", or "gige:192.168.1.10" on a network that
 /// blocks broadcasts; info().id of the source is "gige:VENDOR-SERIAL" in both cases. Opening applies the settings of
 /// the camera's family (linear temperature, full depth, filters off; camera_families.h), checks its test ramp if it has
-/// one, and reads everything back. The first commanded non-uniformity correction also switches the automatic ones off.
-/// Errors of opening: `not_found` (absent; busy, i.e. controlled by another program or by one that crashed within the
-/// heartbeat of about 3 s; no monochrome format of 10 ... 16 bits; description not safe to evaluate, see
+/// one, and reads everything back. The first commanded non-uniformity correction also switches automatic corrections
+/// off. Errors of opening: `not_found` (absent; busy, i.e. controlled by another program or by one that crashed within
+/// the heartbeat of about 3 s; no monochrome format of 10 ... 16 bits; description not safe to evaluate, see
 /// description_guard.h), `interrupted`.
 ///
 /// stop() of a source returns within milliseconds if the camera answers and within 0.4 s if it has vanished. A get or

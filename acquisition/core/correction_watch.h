@@ -39,7 +39,7 @@ struct CorrectionWatchOptions {
   int history = 15;
 };
 
-/// Compares every frame with the one before it, pixel by pixel, over about 5000 pixels. Differences are trimmed at
+/// Compares every frame with the preceding frame, pixel by pixel, over about 5000 pixels. Differences are trimmed at
 /// their 95th percentile, so that slightly moving edges and a few flickering pixels do not count as a correction. One
 /// thread at a time.
 class CorrectionWatch {
@@ -49,7 +49,7 @@ class CorrectionWatch {
   /// Returns the sign of a correction in this frame, if any. The frame must be complete and show the same scene as the
   /// one before it.
   [[nodiscard]] std::optional<CorrectionSign> see(const Frame& frame);
-  /// Same for a frame that is bit-identical to the one before it.
+  /// Does the same for a frame that is bit-identical to the preceding frame.
   [[nodiscard]] std::optional<CorrectionSign> see_frozen();
   /// Announces a change of the scene: the next frame is not compared.
   void scene_changed();

@@ -25,7 +25,7 @@ struct FrameStamp {
   std::int64_t device_time_ns = 0;      ///< time on the clock of the camera or driver; 0: none
   std::int64_t host_time_ns = 0;        ///< CLOCK_MONOTONIC at arrival
   bool may_pause = false;               ///< the camera corrects itself: it may be silent without losing exposures
-  bool after_unread = false;  ///< other frames were lost since the last one because every buffer of the program was
+  bool after_unread = false;  ///< other frames were lost since the last frame because every buffer of the program was
                               ///< full
 };
 

@@ -18,7 +18,7 @@ enum class Rejection {
   incomplete,                ///< reported by the transport
   wrong_size,                ///< differs from the geometry of the source
   repeated,                  ///< the last sequence number again, or the same pixels as an earlier recent frame
-  out_of_order,              ///< the sequence number is below the last one
+  out_of_order,              ///< the sequence number is below the last sequence number
   gapped,                    ///< exposures are missing directly before this frame
   frozen,                    ///< bit-identical to the preceding frame (shutter, stuck transfer)
   saturated,                 ///< more than the permitted share of pixels at zero or full scale

@@ -27,7 +27,7 @@ class RepeatCadence {
  private:
   void learn();
 
-  std::deque<int> runs_;  ///< frames of each of the last exposures, the newest last; the first one may be truncated
+  std::deque<int> runs_;  ///< frames of each of the last exposures, the newest last; the first number may be too small
   int run_ = 0;           ///< frames of the present exposure
   int times_ = 1;
   std::uint64_t repeats_ = 0, before_learnt_ = 0;

@@ -17,7 +17,7 @@
 
 namespace todbench {
 
-/// Maximum number of elements and text pieces of a description. The largest published one has 29 000 elements.
+/// Maximum number of elements and text pieces of a description. The largest published description has 29 000 elements.
 inline constexpr std::size_t most_description_pieces = 400'000;
 
 /// Kinds of nodes.

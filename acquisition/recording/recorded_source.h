@@ -16,7 +16,7 @@ namespace todbench {
 struct RecordedFrame {
   cv::Mat1w counts;
   std::int64_t device_time_ns = 0;        ///< 0: not stated
-  std::optional<std::uint64_t> sequence;  ///< empty: one more than that of the previous frame
+  std::optional<std::uint64_t> sequence;  ///< empty: the sequence number of the previous frame plus one
   std::int64_t host_time_ns = 0;          ///< time on the recording host; 0: not stated
   FrameStatus status = FrameStatus::complete;
   Numbering numbering = Numbering::counted;

@@ -32,7 +32,7 @@ struct RangeOptions {
   std::vector<RangeModel> models{RangeModel::tod};
   std::optional<double> background_k,  ///< background temperature; if stated, radiances determine the contrast
       air_k,                           ///< air temperature; empty: temperature of the model atmosphere
-      surround_k,                      ///< temperature of the reflected surround; empty: that of the background
+      surround_k,                      ///< temperature of the reflected surround; empty: background temperature
       target_contrast;                 ///< luminance contrast of the target for TTP; empty: |dT| / (2 scene contrast)
   /// Emissivity of target and background.
   double emissivity = 1;
@@ -47,7 +47,8 @@ struct RangeOptions {
   double n50 = 6,                ///< cycles on the target for 50 % in ACQUIRE
       mtdp_n50 = 6,              ///< cycles on the target for 50 % in the MTDP-like model
       extinction_u_percent = 0,  ///< relative standard uncertainty of the extinction; it widens the intervals
-      curve_u_percent = 0;       ///< that of the MRTD, MTDP-like and CTF thresholds; it widens the intervals
+      curve_u_percent = 0;       ///< relative standard uncertainty of MRTD, MTDP-like and CTF thresholds; it widens the
+                                 ///< intervals
   /// Relative standard uncertainty of M75 in percent; it widens the interval of the TOD model.
   double m75_u_percent = 0;
   double cn2 = 0,             ///< structure parameter of the turbulence along the path, m^(-2/3); 0: no turbulence

@@ -26,7 +26,7 @@ enum class LinkState {
 enum class LinkEvent {
   done,         ///< the task of the state succeeded
   lost,         ///< no frames and no response
-  failed,       ///< the attempt failed; the next one may succeed
+  failed,       ///< the attempt failed; the next attempt may succeed
   refused,      ///< the camera is there but differs from before
   out_of_time,  ///< away longer than the patience
   abort,        ///< stopped on request

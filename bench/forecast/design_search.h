@@ -70,9 +70,9 @@ struct BestDesign {
 /// % of the highest contrast. With `decide` and without an equivalence margin, contrasts without a limit are left out,
 /// except the highest contrast, which locates the plate. A ramp between the strongest and the weakest contrast is
 /// compared. Its rate is the fastest that meets the request, limited to the rate that the lag of the plate allows (0.1
-/// s if the plan states none). The ramp takes 10 to 1200 s in one direction. The ramp is the best design if it is
-/// faster and the plan states the lag. If the plan is an adaptive schedule, it is compared in its own set-ups, at the
-/// widest half-width that meets the request. The plan as it is remains the best design if it meets the request, no
+/// s if the plan does not state the lag). The ramp takes 10 to 1200 s in one direction. The ramp is the best design if
+/// it is faster and the plan states the lag. If the plan is an adaptive schedule, it is compared in its own set-ups, at
+/// the widest half-width that meets the request. The plan as it is remains the best design if it meets the request, no
 /// design is faster, and it has at least three phases and eight presentations per contrast. Errors: `invalid_input` (no
 /// design examined meets the request; the message states the least half-width, or the rows of the budget that prevent
 /// the decision), predict_plan(), `interrupted`.

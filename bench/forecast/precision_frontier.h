@@ -28,10 +28,10 @@ struct PrecisionChoice {
 
 /// Returns the choices for the camera's curve, if there is one: binary answers, graded answers with 1, 2, 4 and 8
 /// frames, and the plan's own numbers (with_frames()) if they differ. Half-widths come from predict_plan(). The time of
-/// the plan's own choice is that of predict_times(): it is read from `figures`, or computed if `figures` does not
-/// contain it. For graded answers a second number of frames is timed too, and the times of the other numbers are
-/// computed from both. For a ramp, returns only the plan's own choice, because other numbers of frames would change its
-/// rate. Errors: those of predict_plan() and predict_times().
+/// the plan's own choice is computed by predict_times(), or read from `figures` if `figures` contains it. For graded
+/// answers a second number of frames is timed too, and the times of the other numbers are computed from both. For a
+/// ramp, returns only the plan's own choice, because other numbers of frames would change its rate. Errors: those of
+/// predict_plan() and predict_times().
 [[nodiscard]] Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
                                                                       std::stop_token stop, PlanFigures figures = {});
 

@@ -46,7 +46,7 @@ struct ControlChart {
 };
 
 /// Returns the chart of values in the order of time. The reference is the weighted mean of the first values. Its
-/// standard error widens the limits of the EWMA; if this error is 0, the limits are the usual ones. The scatter is the
+/// standard error widens the limits of the EWMA; if this error is 0, these are the usual limits. The scatter is the
 /// square root of half the mean square of successive differences minus the mean u^2 (von Neumann 1941), at least 0.
 /// Empty if there is no value after the reference, or if a value has neither uncertainty nor scatter.
 [[nodiscard]] std::optional<ControlChart> control_chart(const std::vector<ChartValue>& values,

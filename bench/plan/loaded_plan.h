@@ -63,7 +63,7 @@ class LoadedPlan {
   [[nodiscard]] static Result<LoadedPlan> load(Plan plan, const ResourceFinder& find = find_resource);
   /// Combines a plan with parts already read, which must be the parts that the plan names. Errors: validate().
   [[nodiscard]] static Result<LoadedPlan> of(Plan plan, PlanParts parts);
-  /// Loads another plan and reads only the parts that this one does not have.
+  /// Loads another plan and reads only the parts that this plan does not have.
   [[nodiscard]] Result<LoadedPlan> with(Plan plan, const ResourceFinder& find = find_resource) const;
 
   [[nodiscard]] const Plan& plan() const { return plan_; }

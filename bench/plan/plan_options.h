@@ -53,8 +53,8 @@ struct ChosenEstimator {
   FitEstimator estimator = FitEstimator::weibull;
   EstimatorReason reason = EstimatorReason::no_twin;
 };
-/// Chooses the estimator that the plan names. If it names none, chooses the function of the simulated twin `sensor`, or
-/// a Weibull function if modules follow the sensor. No other code chooses the estimator.
+/// Chooses the estimator that the plan names. If the plan names no estimator, chooses the function of the simulated
+/// twin `sensor`, or a Weibull function if modules follow the sensor. No other code chooses the estimator.
 [[nodiscard]] ChosenEstimator chosen_estimator(const Plan& plan, const SensorSpec& sensor);
 /// Frames that a graded answer averages if the plan does not state the number.
 inline constexpr int frames_of_graded_answers = 4;
@@ -62,10 +62,10 @@ inline constexpr int frames_of_graded_answers = 4;
 inline constexpr int least_graded_presentations = 8;
 /// Returns the frames per presentation that the plan states for a contrast; 0: not stated, or no such contrast.
 [[nodiscard]] int frames_at(const Plan& plan, double delta_t_k);
-/// Chooses the kind of answers that the plan names. If it names none, chooses graded answers if their intervals are
-/// validated: function of the twin without a lapse rate, contrasts in kelvin, and a ramp or at least eight
-/// presentations at each contrast. Otherwise chooses binary answers. No other code chooses the kind. The number of
-/// frames is for `delta_t_k` (empty: first contrast of the plan); it is four for graded answers if the plan does not
+/// Chooses the kind of answers that the plan names. If the plan names no kind, chooses graded answers if their
+/// intervals are validated: function of the twin without a lapse rate, contrasts in kelvin, and a ramp or at least
+/// eight presentations at each contrast. Otherwise chooses binary answers. No other code chooses the kind. The number
+/// of frames is for `delta_t_k` (empty: first contrast of the plan); it is four for graded answers if the plan does not
 /// state it.
 [[nodiscard]] AnswersTaken chosen_answers(const Plan& plan, const SensorSpec& sensor,
                                           std::optional<double> delta_t_k = std::nullopt);

@@ -33,8 +33,8 @@
 
 namespace todbench {
 
-/// Verdict at the top of a report. A report shows decisions that the session contains and makes none itself. The
-/// verdict of an interrupted run or of a run without limits is never "pass".
+/// Verdict at the top of a report. A report shows the decisions that the session contains; it makes no decisions
+/// itself. The verdict of an interrupted run or of a run without limits is never "pass".
 enum class ReportVerdict {
   pass,          ///< every limit is met
   fail,          ///< a limit is not met

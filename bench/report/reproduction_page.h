@@ -65,7 +65,7 @@ struct Reproduction {
   std::vector<std::pair<std::string, std::string>> settings;
 };
 
-/// Returns the difference between the value of this program and the published one: in percentage points for
+/// Returns the difference between the value of this program and the published value: in percentage points for
 /// percentages, otherwise in percent of the published value.
 [[nodiscard]] std::string difference_in_words(const ReproducedFigure& figure);
 

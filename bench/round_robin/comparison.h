@@ -95,7 +95,7 @@ struct RoundRobin {
 inline constexpr double outlying_significance = 0.025;
 
 /// Evaluates a comparison. The errors of a laboratory are assumed to be independent between items. The most improbable
-/// outlying laboratory or result is excluded, and the remaining ones are tested again. If no more than half of the
+/// outlying laboratory or result is excluded, and the remaining results are tested again. If no more than half of the
 /// laboratories of an item would remain, none is excluded. If several laboratories are outlying, all laboratories may
 /// understate their uncertainties; the reference values then come from all results. `seed`: seed of the draws for the
 /// medians. Errors: `invalid_input` (no item, or an item with fewer than two laboratories).

@@ -48,7 +48,7 @@ struct MeasuredRun {
                                                const OpenSession& open);
 
 /// Measures the physical measures of the camera and stores their duration. Then checks that the recording is complete
-/// on disk. `recording`: null if none is made. An error ends the run.
+/// on disk. `recording`: null if there is no recording. An error ends the run.
 [[nodiscard]] std::optional<CameraMeasures> measures_of_camera(MeasuredRun& measured, const Plan& plan,
                                                                const ExperimentInputs& inputs, OpenedBench& bench,
                                                                FrameStreamWriter* recording, const OpenSession& open,

@@ -42,7 +42,7 @@ struct PlatePanels {
   std::vector<Polygon> outlines;
 };
 
-/// All measures of one camera, and the reasons for missing ones.
+/// All measures of one camera, and the reasons for missing measures.
 struct MeasureLines {
   std::vector<MeasureLine> lines;
   // Results for figures and tables. After measure_lines() they are complete; after measures_from() they contain only
@@ -62,7 +62,7 @@ struct MeasureLines {
   std::vector<PixelMap> maps{};
   std::vector<std::string> reasons;
 };
-/// Returns the lines of all measures that were taken, their complete results, and the reasons for missing ones.
+/// Returns the lines of all measures that were taken, their complete results, and the reasons for missing measures.
 [[nodiscard]] MeasureLines measure_lines(const CameraMeasures& measures);
 
 /// Returns the quantities of the lines as input of judge().

@@ -41,7 +41,8 @@ struct PersonTrial {
   std::size_t truth = 0;   ///< index of the alternative; for `bars_resolved` 1 if no bars are shown
   std::size_t aspect = 0;  ///< identify
   std::size_t phase = 0;   ///< phase of the bars; for `identify` it follows from the draw
-  /// Number of the noise draw. For bars, the left interval uses this number and the right interval the next one.
+  /// Number of the noise draw. For bars, the left interval uses this number and the right interval uses the next
+  /// number.
   std::uint64_t draw = 0;
 };
 

@@ -82,10 +82,10 @@ struct ScenePictures {
   std::optional<TurbulenceSeen> turbulence;  ///< empty if there is no turbulence
 };
 
-/// Renders the stages. Pictures 1 to 3 are finer than the detectors, 4 and 5 have one pixel per sample, the later ones
-/// eight per sample and axis. The effects that are needed at the contrast of the target are simulated, or all effects
-/// if no size has a threshold at this contrast. Errors: `invalid_input` (a range beyond the table of the air),
-/// `not_identifiable` (no contrast behind the stages), those of scene_signal_k() and of the stages.
+/// Renders the stages. Pictures 1 to 3 are finer than the detectors, 4 and 5 have one pixel per sample, and later
+/// pictures have eight pixels per sample and axis. The effects that are needed at the contrast of the target are
+/// simulated, or all effects if no size has a threshold at this contrast. Errors: `invalid_input` (a range beyond the
+/// table of the air), `not_identifiable` (no contrast behind the stages), those of scene_signal_k() and of the stages.
 [[nodiscard]] Result<ScenePictures> scene_pictures(const ScenePicturesTask& task);
 
 /// Returns a picture of 8 bits, black at low and white at high, enlarged by an integer factor until the longer side has

@@ -23,7 +23,7 @@ class ChainStage {
   ChainStage(const ChainStage&) = delete;
   ChainStage& operator=(const ChainStage&) = delete;
   /// Returns the processed picture, with samples_per_pixel() times the size of `picture` and finite numbers. Errors:
-  /// those of ModuleProcess; built-in stages have none.
+  /// those of ModuleProcess; built-in stages have no errors.
   [[nodiscard]] virtual Result<cv::Mat1f> process(const cv::Mat1f& picture) = 0;
   /// Returns the number of pictures after which an earlier scene contributes less than 0.1 %.
   [[nodiscard]] virtual int memory_frames() const { return 0; }
@@ -31,7 +31,8 @@ class ChainStage {
   [[nodiscard]] virtual int samples_per_pixel() const { return 1; }
   /// Returns the position of sample (0, 0) of the last result, in samples of the picture.
   [[nodiscard]] virtual cv::Point2d first_px() const { return {0, 0}; }
-  /// Returns the displacement that the stage assumes for the last picture, in its samples; empty if it assumes none.
+  /// Returns the displacement that the stage assumes for the last picture, in its samples; empty if it assumes no
+  /// displacement.
   [[nodiscard]] virtual std::optional<cv::Point2d> believed_px() const { return {}; }
 };
 

@@ -171,7 +171,7 @@ class MeasurePresenter final : public QObject {
   std::optional<bool> same_;
   std::optional<Away> away_;
   std::optional<std::filesystem::path> replayed_;  ///< empty: the last run used the camera
-  std::optional<std::filesystem::path> resumed_;   ///< session whose run the last one continued
+  std::optional<std::filesystem::path> resumed_;   ///< session whose run was continued by the last run
   Pause pause_;
   std::shared_ptr<OperatorRequests> desk_ = std::make_shared<OperatorRequests>();
   Inbox inbox_;

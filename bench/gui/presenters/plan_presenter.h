@@ -104,7 +104,7 @@ class PlanPresenter final : public QObject {
   std::vector<AccuracyPrice> prices_;
   QString misfit_, trouble_;
   std::optional<Plan> expected_of_, prices_of_;
-  std::vector<Plan> undone_to_, redone_to_;  ///< the last element is the next one
+  std::vector<Plan> undone_to_, redone_to_;  ///< the last element is the next to be restored
   Plan last_;                                ///< plan before the current change
   Change change_ = Change::single, last_change_ = Change::single;
   EffectPlanner planner_;  // of both jobs

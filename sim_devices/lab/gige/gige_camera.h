@@ -66,7 +66,7 @@ class EmulatedGigeCamera {
   EmulatedGigeCamera& operator=(const EmulatedGigeCamera&) = delete;
 
   [[nodiscard]] const EmulatedGigeCameraConfig& config() const;
-  /// Returns the number of exposures since power-up, including lost ones.
+  /// Returns the number of exposures since power-up, including lost exposures.
   [[nodiscard]] std::uint64_t exposures() const;
   /// Returns the number of exposures that were sent as zeros.
   [[nodiscard]] std::uint64_t failed_exposures() const;

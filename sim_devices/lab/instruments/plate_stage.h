@@ -63,7 +63,7 @@ struct PlateStageOptions {
 /// State of the stage at one moment.
 struct PlateStageState {
   std::string plate;                       ///< plate in the beam; the old plate until the change is complete
-  Mounting mounting = Mounting::identity;  ///< present mounting; the old one until the change is complete
+  Mounting mounting = Mounting::identity;  ///< present mounting; the old mounting until the change is complete
   cv::Point2d shift_mm{0, 0};
   double speed_mm_per_s = 0;  ///< speed of a run along x, with sign; 0 for other movements of the table
   bool is_moving = false;     ///< a part moves or is not yet at rest
