@@ -63,19 +63,19 @@ struct GradedDesignFigures {
 inline constexpr std::array frame_choices{1, 2, 4, 8};
 
 /// Returns the smallest of `frame_choices` whose variance times the time of a presentation is within 10 % of the
-/// minimum. `single_s`: time of a presentation of one frame; `frame_s`: of each further frame. The product is flat
-/// around its minimum, so the smaller number costs little.
+/// minimum. `single_s`: time of a presentation of one frame. `frame_s`: time of each further frame. The product is flat
+/// around its minimum, so a smaller number of frames increases the time only slightly.
 [[nodiscard]] int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s);
 
-/// Returns the half-width of a 95 % interval of ln S75 over its standard error: Student's t times
-/// graded_likely_excess(). This factor covers 95 % of runs, because a variance from few set-ups scatters as chi-square
-/// over its degrees of freedom. From five set-ups on the result includes 1.06, the root of the chance share of
-/// detectors common to set-ups (clustered_variance.h).
+/// Returns the half-width of a 95 % interval of ln S75 divided by the standard error: Student's t times
+/// graded_likely_excess(). The second factor covers 95 % of runs, because a variance from few set-ups scatters as
+/// chi-square over its degrees of freedom. From five set-ups on the result includes 1.06, the root of the chance share
+/// of detectors common to set-ups (clustered_variance.h).
 [[nodiscard]] double graded_interval_factor(const GradedDesignFigures& design);
 /// Returns the ratio of estimated to true standard error that 19 of 20 estimates with these degrees of freedom do not
 /// exceed.
 [[nodiscard]] double likely_excess_of_error(double degrees_of_freedom);
-/// Returns the factor of graded_interval_factor() for unlucky runs: likely_excess_of_error() with graded_freedom().
+/// Returns the second factor of graded_interval_factor(): likely_excess_of_error() with graded_freedom().
 [[nodiscard]] double graded_likely_excess(const GradedDesignFigures& design);
 /// Returns the degrees of freedom of the variance of graded answers.
 [[nodiscard]] double graded_freedom(const GradedDesignFigures& design);

@@ -48,7 +48,7 @@ class NakedEyeSession {
   [[nodiscard]] const Json& comparison() const { return comparison_; }
 
  private:
-  NakedEyeSession() noexcept(false) = default;  // that of Json may throw
+  NakedEyeSession() noexcept(false) = default;  // the constructor of Json may throw
   void draw_next();
 
   NakedEyeTask task_;

@@ -51,7 +51,7 @@ struct KeyFallback {
 /// Condition under which a file must contain a key.
 enum class Required {
   never,
-  with_section,  ///< if the file has the section
+  with_section,  ///< required if the file has the section
   always,
 };
 
@@ -66,7 +66,7 @@ struct KeyReplaced {
 struct PlanKey {
   std::string_view name;
   KeyType type;
-  std::string_view unit{};      ///< "s", "K"; empty: none
+  std::string_view unit{};      ///< unit, "s" or "K"; empty: no unit
   std::string_view sentence{};  ///< description for documents, tooltips and options
   KeyPlace place{};
   Required required = Required::never;
@@ -91,7 +91,7 @@ struct SectionRows {
 
 /// One section of a plan with its keys.
 struct PlanSection {
-  std::string_view name;  ///< as in the file, "limits.acuity"; empty: keys before the first section
+  std::string_view name;  ///< name as in the file, "limits.acuity"; empty: keys before the first section
   std::string_view sentence;
   std::vector<PlanKey> keys;
   SectionRows rows{};                           ///< empty functions: not repeated

@@ -35,7 +35,7 @@ enum class ShownOrientations {
 
 /// Conditions that all sizes and contrasts share.
 struct TrialConditions {
-  SensorSpec sensor;  ///< as planned
+  SensorSpec sensor;  ///< sensor as planned
   SceneMotion motion{};
   int samples_per_pitch = 1;
   int phases_per_axis = 8;  ///< sampling phases per pitch along each axis
@@ -60,9 +60,9 @@ struct WhiteNoise {
 };
 
 /// Responses to the signal for every sampling phase, and projected noise. Each is computed once and shared by the
-/// contrasts. Every kind of noise has its own random numbers, so leaving one out does not change another. White noise
-/// that is turned, mirrored or negated is equally probable and has the scores of exchanged templates. Each draw is
-/// therefore used in all sixteen ways, each in a sixteenth of the phases. One thread at a time.
+/// contrasts. Every kind of noise has its own random numbers, so leaving out one kind does not change the numbers of
+/// another kind. White noise that is turned, mirrored or negated is equally probable and has the scores of exchanged
+/// templates. Each draw is therefore used in all sixteen ways, each in a sixteenth of the phases. One thread at a time.
 class SizeTrial {
  public:
   SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank> bank, double size_pitch,
@@ -81,9 +81,9 @@ class SizeTrial {
   /// (known_position.h).
   [[nodiscard]] double known_position_proportion(double noise, int nodes, double eye_sd = 0) const;
 
-  /// Returns the variance of the score difference between the true template and another for numbers of sd 1 that
-  /// samples share as stated, divided by the variance for white noise of sd 1. The result is the largest ratio over the
-  /// alternatives, at the middle of the search.
+  /// Returns the variance of the score difference between the true template and another template, divided by its value
+  /// for white noise of sd 1. The noise has sd 1, and the samples that `shared` states have the same random number. The
+  /// result is the largest ratio over the alternatives, at the middle of the search.
   [[nodiscard]] double variance_ratio(SharedBy shared) const;
   /// Returns the standard deviation of the noise of the eye in a score, in units of the contrast. 0 without an eye.
   [[nodiscard]] double eye_sd(double contrast_k) const;
@@ -133,7 +133,7 @@ class SizeTrial {
   std::vector<double> white_taps_;   ///< taps for the sum of the noise of sensor and observer; empty without display
   double white_ratio_ = -1;          ///< ratio to which white_taps_ belong
   int places_of_dance_ = 1;          ///< displacements by image dance for each phase
-  std::vector<Response> responses_;  ///< by orientation shown, position of the dance and phase
+  std::vector<Response> responses_;  ///< responses by shown orientation, position of the dance and phase
   ScoreTurns turns_;
   std::vector<std::vector<std::uint32_t>> phase_group_;  ///< responses by group; its phases lie evenly in the pixel
   std::vector<std::uint32_t> every_response_;
@@ -142,7 +142,7 @@ class SizeTrial {
   std::vector<std::vector<float>> eye_;                ///< scores of the noise of the eye with sd 1, by draw
   std::vector<float> mixed_;                           ///< scratch
   std::vector<std::vector<float>> coloured_;           ///< projected coloured noise in kelvin, by draw
-  std::map<double, std::vector<double>> pixel_draws_;  ///< by contrast of the scene: proportion of each draw
+  std::map<double, std::vector<double>> pixel_draws_;  ///< proportion correct of each draw, by contrast of the scene
 };
 
 }  // namespace todbench
