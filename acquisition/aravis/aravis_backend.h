@@ -24,8 +24,7 @@ enum class AravisTransport {
 enum class PacketResend {
   automatic,  ///< missing packets are requested again if the camera's capability register states support
   never,      ///< a frame with missing packets is delivered as incomplete when the next frame begins
-  always,     ///< missing packets are requested again in any case; a frame with missing packets is delayed by up to 0.1
-              ///< s
+  always,     ///< missing packets are always requested again; a frame with missing packets is delayed by up to 0.1 s
 };
 
 /// Options of aravis_backend().

@@ -24,9 +24,7 @@ struct U3vReading {
   std::uint64_t most_bytes = 0;                ///< maximum size of the description as stored in the camera
   std::chrono::milliseconds patience{30'000};  ///< time limit of the whole read
   std::stop_token stop = {};
-  std::function<void(std::uint64_t done, std::uint64_t bytes)> on_bytes = {};  ///< called on the reading thread with
-                                                                               ///< the bytes read and the total number
-                                                                               ///< of bytes
+  std::function<void(std::uint64_t done, std::uint64_t bytes)> on_bytes = {};  ///< called on the reading thread
 };
 
 /// A description as stored in the camera.

@@ -47,7 +47,7 @@ struct RangeOptions {
   double n50 = 6,                ///< cycles on the target for 50 % in ACQUIRE
       mtdp_n50 = 6,              ///< cycles on the target for 50 % in the MTDP-like model
       extinction_u_percent = 0,  ///< relative standard uncertainty of the extinction; it widens the intervals
-      curve_u_percent = 0;       ///< relative standard uncertainty of MRTD, MTDP-like and CTF thresholds; it widens the
+      curve_u_percent = 0;       ///< relative standard uncertainty of MRTD, MTDP-like and CTF thresholds; it widens
                                  ///< intervals
   /// Relative standard uncertainty of M75 in percent; it widens the interval of the TOD model.
   double m75_u_percent = 0;

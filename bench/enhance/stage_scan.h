@@ -14,8 +14,7 @@ namespace todbench {
 
 /// Parameters of the scan.
 struct StageScan {
-  int steps = 2;              ///< positions within a pixel along each axis; a presentation needs at least steps^2
-                              ///< frames
+  int steps = 2;              ///< positions within a pixel along each axis; a presentation needs steps^2 frames or more
   double pixel_mm = 0;        ///< side of a pixel on the plate: distance times the angle of a pixel
   int frames_after_move = 2;  ///< exposures of a free-running camera that are dropped after each move (in flight)
 };
