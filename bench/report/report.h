@@ -116,7 +116,7 @@ struct ReportData {
 
 /// Returns the verdict to show: the decision of the session's verdict, with three exceptions. If files were changed,
 /// the result is `changed`. For an interrupted run, the result is `fail` if the run failed, otherwise `interrupted`.
-/// For a pass without limits, and without a verdict, the result is `not_judged`.
+/// For a pass without limits, or if there is no verdict, the result is `not_judged`.
 [[nodiscard]] ReportVerdict report_verdict(const ReportData& data);
 
 /// Returns the TOD curve of the report.

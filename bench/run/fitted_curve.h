@@ -67,8 +67,7 @@ void keep_shape(MeasurementResult& result, const TwinShapesOutcome& outcome, con
 struct FittedCurve {
   TodCurve curve;
   TwinShapesOutcome said;
-  std::optional<TodCurve> by_twin{};   ///< fitted with the function of the twin, if `curve` has the function of the
-                                       ///< surrogate
+  std::optional<TodCurve> by_twin{};   ///< fit with the function of the twin, if `curve` has the surrogate's function
   std::map<double, double> model_u{};  ///< by set contrast, if the pictures contradict the model
 
   [[nodiscard]] const TodCurve& functions_of_twin() const { return by_twin ? *by_twin : curve; }

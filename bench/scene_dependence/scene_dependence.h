@@ -57,8 +57,8 @@ struct SceneDependence {
 
 /// Options of the measurement.
 struct SceneDependenceOptions {
-  int cycles = 6;         ///< number of cycles, at least 3; in each cycle the bar is out, in, in, out, so that a linear
-                          ///< drift cancels
+  int cycles = 6;         ///< cycles, at least 3; the bar is out, in, in, out in each cycle, so that a linear drift
+                          ///< cancels
   int frames = 16;        ///< frames averaged per position of the bar
   int settle_frames = 0;  ///< frames discarded after the bar has moved, in addition to the number in the plan
   double tolerance_percent = 2;  ///< largest allowed change of the response

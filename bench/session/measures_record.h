@@ -36,8 +36,7 @@ struct PlatePanels {
   int width = 0, height = 0;  ///< size of each picture in pixels
   std::string seen, expected, difference;
   double black_k = 0, white_k = 0;  ///< grey scale of the first two pictures
-  double difference_k = 0;          ///< grey scale of the difference: black at minus this value, white at plus this
-                                    ///< value
+  double difference_k = 0;          ///< grey scale of the difference: black at -difference_k, white at +difference_k
   /// Outlines of the detected shapes, in pixels of the panels (pixel centres at integers).
   std::vector<Polygon> outlines;
 };

@@ -51,7 +51,7 @@ struct MrtdStudy {
 /// Errors: `invalid_input` (a range beyond the table of the air, or with a transmittance of 0), those of
 /// virtual_mrtd().
 ///
-/// A threshold beyond Nyquist is not an MRTD, because at no phase the picture has four bars. A threshold by the
+/// A threshold beyond Nyquist is not an MRTD, because no phase results in a picture with four bars. A threshold by the
 /// criterion `detection` is not an MRTD either, because an algorithm still discriminates alias patterns in which people
 /// do not see four bars.
 [[nodiscard]] Result<MrtdStudy> study_mrtd(const MrtdStudyTask& task);

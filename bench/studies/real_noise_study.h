@@ -46,8 +46,7 @@ struct RecordedNoise {
 
 /// Options of the study.
 struct RealNoiseOptions {
-  std::vector<double> contrast_over_noise{1.6, 3.3, 8, 28};  ///< contrasts divided by the noise; 3.3 is 0.23 K at a
-                                                             ///< NETD of 0.07 K
+  std::vector<double> contrast_over_noise{1.6, 3.3, 8, 28};  ///< contrasts over the noise; 3.3 is 0.23 K at 0.07 K NETD
   /// Noise of a whole frame divided by the noise of successive frames (TemporalNoise::whole_to_successive). It
   /// quantifies how noise that is correlated in time affects the observer.
   double whole_to_successive = 1;
@@ -67,8 +66,7 @@ struct SizeEstimate {
 struct NoiseAcuity {
   double contrast_over_noise = 0;
   SizeEstimate real, white;
-  double acuity_ratio = 0;  ///< acuity with real noise divided by acuity with white noise of the same standard
-                            ///< deviation
+  double acuity_ratio = 0;  ///< acuity with real noise over acuity with white noise of the same standard deviation
   Interval ratio_ci95;      ///< 95 % interval of the ratio, by Student's t with blocks - 1 degrees of freedom
   /// Standard deviation of the noise in the differences of the templates, relative to white noise of the same strength.
   /// Only this part of the noise affects the observer's decisions. If the ratio is below 1, the noise has less effect

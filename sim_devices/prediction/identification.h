@@ -55,8 +55,7 @@ struct IdentificationTask {
   std::vector<IdentificationRange> ranges;                         ///< ranges with their air
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;  ///< pictures that the observer uses as templates
   TargetCues cues = TargetCues::all;                               ///< differences between the targets
-  int decisions = 2000;                                            ///< decisions per target and range, all aspects
-                                                                   ///< together
+  int decisions = 2000;                                            ///< decisions per target and range, over all aspects
   /// Motion of the targets in the picture: they move, or the camera turns. The effects must be planned for it.
   SceneMotion motion{};
   /// Use of the frames of a pass, as for a moving triangle; internal noise is drawn once per decision.
@@ -102,8 +101,8 @@ struct IdentificationPoint {
 struct IdentificationEffort {
   double decisions = 0;      ///< all targets and ranges
   double largest_bytes = 0;  ///< memory of the templates of one range
-  double processor_s = 0;    ///< time on one core with about 2 x 10^10 template samples a second; accurate to a factor
-                             ///< of two
+  double processor_s = 0;    ///< time on one core with about 2 x 10^10 template samples a second, within a factor of
+                             ///< two
 };
 /// Predicts the effort without computing. Errors: those of identify() about the targets and their size.
 [[nodiscard]] Result<IdentificationEffort> planned_effort(const IdentificationTask& task);

@@ -49,7 +49,8 @@ inline constexpr std::size_t most_aspects = 16;
 /// Target of a set for identification.
 struct IdentificationTarget {
   std::string name;                 ///< name of the target in the set
-  std::vector<FieldScene> aspects;  ///< views of the target; the origin of each view is the centre of the target
+  std::vector<FieldScene> aspects;  ///< views of the target; the origin of each view is the centre of the visible
+                                    ///< target
 };
 
 /// Checks a scene. Error: `invalid_input` (an empty scene, temperatures of 0 K or below, emissivities outside 0 to 1,
