@@ -22,9 +22,9 @@ enum class AravisTransport {
 
 /// Handling of lost packets.
 enum class PacketResend {
-  automatic,  ///< requested again if the camera's capability register states support
-  never,      ///< delivered as incomplete when the next frame begins, if packets are missing
-  always,     ///< packets requested again in any case; a frame with missing packets is delayed by up to 0.1 s
+  automatic,  ///< missing packets are requested again if the camera's capability register states support
+  never,      ///< a frame with missing packets is delivered as incomplete when the next frame begins
+  always,     ///< missing packets are always requested again; a frame with missing packets is delayed by up to 0.1 s
 };
 
 /// Options of aravis_backend().
@@ -40,7 +40,7 @@ struct AravisOptions {
   /// Smallest receive buffer of the socket; at least eight payloads are requested in any case, because cameras send
   /// whole frames in one burst.
   std::uint64_t min_socket_buffer_bytes = 4U << 20U;
-  /// Time limit for reading the description of a GigE camera; it is read twice.
+  /// Time limit for reading the description of a GigE camera. The description is read twice.
   std::chrono::milliseconds description_patience{30'000};
   std::stop_token stop = {};                                        ///< interrupts the reading of a description
   std::function<void(std::string_view sentence)> on_progress = {};  ///< called about once a second during the reading
@@ -49,17 +49,16 @@ struct AravisOptions {
 /// Lists cameras by discovery (1 s on a network). Opens "gige:VENDOR-SERIAL", or "gige:192.168.1.10" on a network that
 /// blocks broadcasts; info().id of the source is "gige:VENDOR-SERIAL" in both cases. Opening applies the settings of
 /// the camera's family (linear temperature, full depth, filters off; camera_families.h), checks its test ramp if it has
-/// one, and reads everything back. The first commanded non-uniformity correction also switches the automatic ones off.
-/// Errors of opening: `not_found` (absent; busy, i.e. controlled by another program or by one that crashed within the
-/// heartbeat of about 3 s; no monochrome format of 10 ... 16 bits; description not safe to evaluate, see
+/// one, and reads everything back. The first commanded non-uniformity correction also switches automatic corrections
+/// off. Errors of opening: `not_found` (absent; busy, i.e. controlled by another program or by one that crashed within
+/// the heartbeat of about 3 s; no monochrome format of 10 ... 16 bits; description not safe to evaluate, see
 /// description_guard.h), `interrupted`.
 ///
 /// stop() of a source returns within milliseconds if the camera answers and within 0.4 s if it has vanished. A get or
-/// set that is waiting for a vanished camera delays it by up to 2.5 s (five attempts of 0.5 s inside Aravis). A
+/// set that is waiting for a vanished camera delays stop() by up to 2.5 s (five attempts of 0.5 s inside Aravis). A
 /// vanished GigE camera is reported as `disconnected` about 3 s after its last frame if next() is called with timeouts
-/// below 1 s, otherwise after 5 s by Aravis's heartbeat; an unplugged USB camera is reported at once. Destroying the
-/// source of a vanished camera leaves the closing of the connection (up to 8 s) to a background thread that owns only
-/// the camera.
+/// below 1 s, otherwise after 5 s by Aravis's heartbeat; an unplugged USB camera is reported at once. If the source of
+/// a vanished camera is destroyed, a background thread that owns only the camera closes the connection (up to 8 s).
 [[nodiscard]] std::unique_ptr<CameraBackend> aravis_backend(AravisOptions options = {});
 
 }  // namespace todbench

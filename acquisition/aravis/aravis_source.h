@@ -22,7 +22,7 @@ namespace todbench {
 /// An open GigE Vision or USB3 Vision camera. One thread at a time, except stop().
 class AravisSource : public FrameSource {
  public:
-  /// Opens a source on a camera. `device_address`: IPv4 address of a GigE camera, empty for USB. `info` holds the
+  /// Opens a source on a camera. `device_address`: IPv4 address of a GigE camera, empty for USB. `info` contains the
   /// identity; the rest is read from the camera. Precondition: no other reference to the camera's device exists.
   [[nodiscard]] static Result<std::unique_ptr<FrameSource>> create(GObjectPtr<ArvCamera> camera, AravisOptions options,
                                                                    SourceInfo info, std::string device_address);
@@ -98,13 +98,14 @@ class AravisSource : public FrameSource {
   std::vector<std::string> setup_warnings_;
   std::string socket_buffer_bytes_, socket_buffer_warning_;
   CameraFamily family_;
-  bool bytes_swapped_ = false;  ///< relative to the byte order that the camera states
+  bool bytes_swapped_ = false;  ///< the byte order is opposite to the order that the camera states
   bool corrections_taken_over_ = false;
   std::optional<double> stated_kelvin_per_count_, stated_offset_k_;
   std::optional<cv::Size> stated_frame_;  ///< stated by the user if the camera states a wrong size
   std::string nuc_command_;               ///< stated by the user; empty: command of the family, or found by name
   StreamFormat format_;
-  int frames_of_wrong_size_ = 0;  ///< in succession since the start; negative: a frame of the right size has arrived
+  int frames_of_wrong_size_ = 0;  ///< successive frames of wrong size since the start; negative: a frame of the right
+                                  ///< size has arrived
   std::shared_ptr<const RadiometricScale> scale_;
   FrameSequence sequence_{FrameNumberKind::gvsp16, 0};
   std::int64_t may_pause_until_ns_ = 0;  ///< host time until which a commanded correction may interrupt the stream

@@ -28,10 +28,10 @@ struct CameraFamily {
   std::string name;                    ///< "FLIR Ax5"; "unlisted" for a camera that is not in the table
   std::vector<FeatureChoice> choices;  ///< set in this order when a camera is opened
   std::vector<LinearMode> linear;
-  std::string nuc_mode;                    ///< enumeration; empty: none known
+  std::string nuc_mode;                    ///< enumeration that controls the time of corrections; empty: unknown
   std::vector<std::string> nuc_commanded;  ///< entries of nuc_mode that restrict corrections to commands, best first
-  std::vector<std::string> nuc_commands;   ///< best first
-  std::vector<std::string> frame_rate;     ///< features that hold the frame rate, best first
+  std::vector<std::string> nuc_commands;   ///< commands of a correction, best first
+  std::vector<std::string> frame_rate;     ///< features that contain the frame rate, best first
   std::string test_pattern, test_ramp;     ///< enumeration and its entry; the ramp has the count x at column x
   bool high_byte_first = false;            ///< Mono16 arrives with the high byte first, but no feature states this
 };
@@ -42,8 +42,8 @@ struct CameraFamily {
                                          const std::function<bool(const std::string& feature)>& has_feature);
 
 /// Returns the commands that correct the non-uniformity according to their names, best first: names with NUC or FFC,
-/// then commands that calibrate or correct a shutter or flag, then those for an offset; shorter before longer
-/// ("NUCActionLong" is the slow variant of "NUCAction"). Commands that load, store, reset, open, close or stop
+/// then commands that calibrate or correct a shutter or flag, then commands for an offset. Shorter names precede longer
+/// names ("NUCActionLong" is the slow variant of "NUCAction"). Commands that load, store, reset, open, close or stop
 /// something are excluded.
 [[nodiscard]] std::vector<std::string> correction_commands(const std::vector<std::string>& commands);
 

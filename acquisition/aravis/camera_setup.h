@@ -28,7 +28,7 @@ struct StreamFormat {
 /// Returns the camera's family.
 [[nodiscard]] CameraFamily family_of(ArvDevice* device, const SourceInfo& info);
 
-/// Applies the settings of the family and sets the pixel format (`wanted`; empty: the best one). Features that the
+/// Applies the settings of the family and sets the pixel format (`wanted`; empty: the best format). Features that the
 /// camera lacks are skipped. Returns a warning for each feature that the camera refuses. Errors: `not_found` (no usable
 /// pixel format, `wanted` refused), `disconnected`.
 [[nodiscard]] Result<std::vector<std::string>> prepare_camera(ArvCamera* camera, const CameraFamily& family,

@@ -20,7 +20,7 @@ namespace todbench {
 
 /// Limits and progress of reading a description.
 struct DescriptionReading {
-  std::chrono::milliseconds patience{30'000};  ///< for the whole transfer
+  std::chrono::milliseconds patience{30'000};  ///< time limit of the whole transfer
   std::stop_token stop = {};
   std::function<void(std::string_view sentence)> on_progress = {};  ///< about once a second
 };
@@ -32,7 +32,7 @@ struct DescriptionReading {
                                                                        const DescriptionReading& reading);
 
 /// Same for a USB3 Vision camera: reads the description through the manifest in the camera's registers. Empty if no
-/// camera has these names or another program holds it.
+/// camera has these names or another program uses it.
 [[nodiscard]] Result<std::optional<std::string>> read_safe_description(const UsbNames& names,
                                                                        const DescriptionReading& reading);
 

@@ -23,7 +23,7 @@ namespace todbench {
 /// Returns a buffer for a stream: without id, and zeroed so that the gaps of an incomplete frame contain no old data.
 [[nodiscard]] GObjectPtr<ArvBuffer> new_frame_buffer(std::size_t bytes);
 
-/// Clears the id. Otherwise a frame whose leader packet is lost would return with the id of an older frame.
+/// Clears the id. Otherwise a frame whose leader packet is lost would have the id of an older frame.
 void clear_frame_id(ArvBuffer* buffer);
 
 /// Returns the id of the frame in the buffer; empty if its leader packet was lost.
@@ -32,7 +32,7 @@ void clear_frame_id(ArvBuffer* buffer);
 /// Returns the size of the picture according to the leader; empty without a leader or if the payload is not an image.
 [[nodiscard]] cv::Size size_of_leader(ArvBuffer* buffer);
 
-/// Returns false if the buffer returned only because the stream ended.
+/// Returns whether the buffer was filled. False if Aravis released the buffer only because the stream ended.
 [[nodiscard]] bool holds_exposure(ArvBuffer* buffer);
 
 /// Returns the frame in the buffer: pixels copied once, without the padding stated by the leader. The caller fills in

@@ -18,8 +18,8 @@ namespace todbench {
 inline constexpr std::uint16_t gvcp_port = 3956;
 /// Version register. Every device answers any client that reads it, without side effects.
 inline constexpr std::uint32_t gvcp_version_register = gev::version;
-/// Control channel privilege: not zero while a client controls the device. Do not poll it, because some devices take
-/// such a read for the controller's heartbeat.
+/// Control channel privilege: not zero while a client controls the device. Do not poll it, because some devices
+/// interpret this read as the heartbeat of the controller.
 inline constexpr std::uint32_t gvcp_control_privilege_register = gev::control_privilege;
 
 /// Reads a 32-bit register of the device at `ipv4`; needs no control privilege. Repeats the request every 50 ms and
@@ -34,7 +34,7 @@ inline constexpr std::uint32_t gvcp_control_privilege_register = gev::control_pr
 
 /// Limits and progress of a long read.
 struct GvcpReading {
-  std::chrono::milliseconds patience{30'000};  ///< for the whole read
+  std::chrono::milliseconds patience{30'000};  ///< time limit of the whole read
   std::stop_token stop = {};
   std::function<void(std::uint64_t bytes)> on_bytes = {};  ///< bytes read so far; called on the reading thread
 };

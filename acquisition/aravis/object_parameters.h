@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Features that hold a camera's assumptions about object, atmosphere, window and optics, for all families. Sources:
+/// Features that contain a camera's assumptions about object, atmosphere, window and optics, for all families. Sources:
 /// FLIR_A35.xml of areaDetector/ADGenICam, FLIR's node lists of A3xx ... A700; the other names follow the style of SFNC
 /// and come from camera makers. docs/reference/cameras.md lists the features of each family.
 [[nodiscard]] std::span<const char* const> object_parameters();

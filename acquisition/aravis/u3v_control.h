@@ -21,10 +21,10 @@ struct UsbNames {
 
 /// Limits and progress of reading a description.
 struct U3vReading {
-  std::uint64_t most_bytes = 0;                ///< of the description as stored in the camera
-  std::chrono::milliseconds patience{30'000};  ///< for the whole read
+  std::uint64_t most_bytes = 0;                ///< maximum size of the description as stored in the camera
+  std::chrono::milliseconds patience{30'000};  ///< time limit of the whole read
   std::stop_token stop = {};
-  std::function<void(std::uint64_t done, std::uint64_t bytes)> on_bytes = {};  ///< on the reading thread
+  std::function<void(std::uint64_t done, std::uint64_t bytes)> on_bytes = {};  ///< called on the reading thread
 };
 
 /// A description as stored in the camera.
@@ -33,9 +33,9 @@ struct U3vDescriptionContent {
   bool zipped = false;
 };
 
-/// Reads the first description in the manifest of the camera with these names, and leaves the camera unchanged. Empty
-/// if there is no such camera or another program holds it. Errors: `not_found` (its tables are unreadable or
-/// contradictory; it is too slow), `interrupted`.
+/// Reads the first description in the manifest of the camera with these names, and does not change the camera. Empty if
+/// there is no such camera or another program uses it. Errors: `not_found` (its tables are unreadable or contradictory;
+/// it is too slow), `interrupted`.
 [[nodiscard]] Result<std::optional<U3vDescriptionContent>> u3v_read_description(const UsbNames& names,
                                                                                 const U3vReading& reading);
 

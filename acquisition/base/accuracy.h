@@ -10,19 +10,20 @@ namespace todbench {
 
 /// Tolerances in physical terms, passed to every computation (after GSParams of GalSim).
 struct Accuracy {
-  double acuity_tolerance_percent = 1;  ///< of the 75 % acuity; limit of all numerical errors together
-  double wrap_tolerance = 1.5e-5;  ///< relative to the contrast: signal that the periodic grid folds back into a pixel
-  double band_tolerance = 1e-4;    ///< relative to the contrast: signal beyond the highest computed frequency
+  double acuity_tolerance_percent = 1;  ///< limit of all numerical errors together, in percent of the 75 % acuity
+  double wrap_tolerance = 1.5e-5;  ///< signal that the periodic grid folds back into a pixel, relative to the contrast
+  double band_tolerance = 1e-4;    ///< signal above the highest computed frequency, relative to the contrast
   int wavelengths = 16;            ///< Gauss-Legendre nodes over the band
   int phases_per_axis = 8;         ///< sampling phases averaged by the direct estimate, per pitch and axis
   int noise_draws = 600;           ///< draws of the direct estimate per size, shared by phases and contrasts
-  double standard_error_percent = 0;  ///< of the direct estimate: draws are added until it is reached; 0: no target
+  double standard_error_percent = 0;  ///< the direct estimate adds draws until it has this standard error; 0: no target
   bool operator==(const Accuracy&) const = default;
 
   /// Upper limit of the draws per size: 40 MB of projected noise per size.
   static constexpr int max_noise_draws = 8000;
 
-  /// Derives all tolerances from the acuity tolerance: half of it for the standard error, the others in proportion.
+  /// Derives all tolerances from the acuity tolerance: half of it for the standard error. The other tolerances are
+  /// scaled in proportion.
   [[nodiscard]] static Accuracy for_tolerance(double acuity_tolerance_percent);
   [[nodiscard]] static Accuracy draft();
   [[nodiscard]] static Accuracy normal();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Statistical distributions: the functions of Boost.Math, compiled in one place because their templates take seconds to
-// compile.
+// Statistical distributions: the functions of Boost.Math, compiled in one source file because their templates take
+// seconds to compile.
 #pragma once
 
 #include <optional>

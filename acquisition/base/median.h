@@ -7,7 +7,8 @@
 
 namespace todbench {
 
-/// Returns the median; for an even number of values the mean of the two middle ones. Precondition: at least one value.
+/// Returns the median; for an even number of values, the mean of the two middle values. Precondition: at least one
+/// value.
 [[nodiscard]] inline double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Other programs as child processes, started without a shell. The only place that creates processes.
+// Other programs as child processes, started without a shell. No other part of todbench creates processes.
 #pragma once
 
 #include <sys/types.h>
@@ -41,8 +41,8 @@ struct ProgramRun {
 
 /// Destination of the output of a child.
 enum class ProgramOutput {
-  kept,             ///< standard output and standard error
-  kept_but_errors,  ///< standard output; standard error is discarded
+  kept,             ///< standard output and standard error are returned
+  kept_but_errors,  ///< standard output is returned; standard error is discarded
   shown,            ///< displayed on the output of this program, because the child may ask a question
 };
 
@@ -54,7 +54,7 @@ enum class ProgramOutput {
 /// Returns the path of this program.
 [[nodiscard]] std::string own_program();
 
-/// Both ends of a new pipe. A child has an end only if its ChildStreams contain it.
+/// Both ends of a new pipe. A child receives an end only if its ChildStreams contain this end.
 struct Pipe {
   Descriptor read, write;
 };

@@ -32,8 +32,8 @@ struct ErrorKey {
   bool operator==(const ErrorKey&) const = default;
 };
 
-/// A failure in one sentence. Each caller adds its action in front: "opening gige:X: setting PixelFormat=Mono16: access
-/// denied". The message is for people; callers branch on `code` and take the subject from `key`.
+/// A failure. Each caller adds its action in front: "opening gige:X: setting PixelFormat=Mono16: access denied". The
+/// message is for people; callers branch on `code` and read the subject from `key`.
 struct Error {
   ErrorCode code = ErrorCode::internal;
   std::string message;
@@ -73,7 +73,7 @@ using Result = tl::expected<T, Error>;
   return {cause.code, std::move(message), ErrorKey{std::move(name), cause.key->reason}};
 }
 
-/// Returns the same error under another code, for a caller to whom it has another meaning.
+/// Returns the same error under another code, for a caller for which the error has another meaning.
 [[nodiscard]] inline Error with_code(ErrorCode code, Error cause) {
   cause.code = code;
   return cause;

@@ -18,7 +18,7 @@ class RandomStream {
   /// Selects the stream whose number is the FNV-1a hash of `name`, e.g. "sensor.temporal".
   RandomStream(std::uint64_t seed, std::string_view name);
 
-  /// Returns the the substream of item `index` (a frame of a sensor, a trial of an observer).
+  /// Returns the substream of item `index` (a frame of a sensor, a trial of an observer).
   [[nodiscard]] RandomStream sub(std::uint64_t index) const;
 
   /// Returns four raw 32-bit words at position `index`.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The only place that creates and opens files: writers never follow a link, readers never wait for a pipe.
+// Creation and opening of all files of todbench. Writers never follow a link; readers never wait for a pipe.
 #pragma once
 
 #include <sys/types.h>

@@ -19,8 +19,8 @@ inline constexpr std::size_t longest_shown_line = 4000;
 /// Returns valid_text() on one line: C0 and DEL become blanks. A text of more than `longest` characters ends in an
 /// ellipsis.
 [[nodiscard]] std::string one_line(std::string_view text, std::size_t longest = longest_shown_line);
-/// Returns finished JSON in which \u escapes stand for the characters that valid_text() replaces. These occur only
-/// inside its strings.
+/// Returns the JSON text with \u escapes in place of the characters that valid_text() replaces. In JSON text these
+/// characters occur only inside strings.
 [[nodiscard]] std::string escaped_json(std::string_view json);
 /// Returns the text with the letters A to Z in lower case, in every locale.
 [[nodiscard]] std::string lower_case(std::string_view text);

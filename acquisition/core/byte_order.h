@@ -48,7 +48,8 @@ class ByteOrderWatch {
   void see(const cv::Mat1w& counts, int significant_bits);
   /// Returns the byte order of the frames; `as_stated` for counts of one byte, and before the first frame.
   [[nodiscard]] ByteOrderVerdict verdict() const;
-  /// Returns a sentence if one byte is zero in all examined pixels, so that no frame shows the order; otherwise empty.
+  /// Returns a sentence if one byte is zero in all examined pixels, so that no frame reveals the order; otherwise
+  /// empty.
   [[nodiscard]] std::string note() const;
 
  private:

@@ -16,8 +16,8 @@ struct CameraEntry {
   std::string id;  ///< "gige:VENDOR-SERIAL", "sim:sc2000", "file:PATH"
   std::string vendor, model, serial, transport;
   std::string address;  ///< present location; never part of the identity
-  std::string note{};   ///< one sentence if it cannot be opened in this state or cannot be identified again; otherwise
-                        ///< empty
+  std::string note{};   ///< one sentence if the camera cannot be opened in this state or cannot be identified again;
+                        ///< otherwise empty
 };
 
 /// A back end for one family of cameras. To add one, implement list() and open().

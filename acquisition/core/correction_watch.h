@@ -32,14 +32,14 @@ struct CorrectionWatchOptions {
   /// deviations of temporal noise gives sqrt(1 + f^2 / 2): 1.3 detects f = 1.2. White noise scatters by 1.2 % (5000
   /// pixels). If the noise is below 1.5 counts, changes below 2 counts are not detected.
   double pattern_ratio = 1.3;
-  /// A picture is without structure if its range (1st to 99th percentile) is below this share of the largest range so
-  /// far.
+  /// A picture is without structure if its range (1st to 99th percentile) is below this share of the largest observed
+  /// range.
   double shutter_range_ratio = 0.5;
   /// Number of comparisons that are kept for the median difference, and that are required before a sign is reported.
   int history = 15;
 };
 
-/// Compares every frame with the one before it, pixel by pixel, over about 5000 pixels. Differences are trimmed at
+/// Compares every frame with the preceding frame, pixel by pixel, over about 5000 pixels. Differences are trimmed at
 /// their 95th percentile, so that slightly moving edges and a few flickering pixels do not count as a correction. One
 /// thread at a time.
 class CorrectionWatch {
@@ -49,7 +49,7 @@ class CorrectionWatch {
   /// Returns the sign of a correction in this frame, if any. The frame must be complete and show the same scene as the
   /// one before it.
   [[nodiscard]] std::optional<CorrectionSign> see(const Frame& frame);
-  /// Same for a frame that is bit-identical to the one before it.
+  /// Does the same for a frame that is bit-identical to the preceding frame.
   [[nodiscard]] std::optional<CorrectionSign> see_frozen();
   /// Announces a change of the scene: the next frame is not compared.
   void scene_changed();
@@ -60,7 +60,7 @@ class CorrectionWatch {
   CorrectionWatchOptions options_;
   std::vector<std::uint16_t> previous_;  ///< sampled pixels of the frame before; empty: no frame
   std::deque<double> differences_;       ///< trimmed mean differences of successive frames
-  std::optional<double> usual_range_;    ///< largest range of this scene so far
+  std::optional<double> usual_range_;    ///< largest range observed in this scene
   int equal_frames_ = 1;
 };
 

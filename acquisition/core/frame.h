@@ -30,7 +30,7 @@ enum class CorrectionState {
 /// Origin of a frame's sequence number.
 enum class Numbering : std::uint8_t {
   counted,    ///< from the numbers of the camera or its driver, which agree with the elapsed time
-  restarted,  ///< the numbers restarted or jumped against all clocks; the loss is estimated from time
+  restarted,  ///< the numbers restarted or jumped, and all clocks contradict them; the loss is estimated from time
   timed,      ///< the numbers are consecutive, but time is missing; the loss is estimated from time
   unread,     ///< as counted; frames before this one were lost because the program had filled every buffer
 };

@@ -22,10 +22,10 @@ enum class FrameNumberKind {
 /// Number and times of a frame at its arrival.
 struct FrameStamp {
   std::optional<std::uint64_t> number;  ///< empty: lost together with its packet
-  std::int64_t device_time_ns = 0;      ///< on the clock of the camera or driver; 0: none
+  std::int64_t device_time_ns = 0;      ///< time on the clock of the camera or driver; 0: none
   std::int64_t host_time_ns = 0;        ///< CLOCK_MONOTONIC at arrival
   bool may_pause = false;               ///< the camera corrects itself: it may be silent without losing exposures
-  bool after_unread = false;  ///< other frames were lost since the last one because every buffer of the program was
+  bool after_unread = false;  ///< other frames were lost since the last frame because every buffer of the program was
                               ///< full
 };
 
@@ -49,11 +49,11 @@ class FrameSequence {
   /// `frame_rate_hz` as the camera states it; 0: unknown.
   FrameSequence(FrameNumberKind kind, double frame_rate_hz);
 
-  /// Returns the place of a frame. A frame without a number gets the place after the last frame; its true place is this
-  /// one or a later one. 16-bit numbers are unwrapped over gaps of up to 32767 frames (ten minutes at 50 Hz). A frame
-  /// that is older according to its number and the camera's clock gets its older place. A counted gap before a frame
-  /// with `after_unread` is `unread`. So is a gap before the following frame, because a frame may have been in transfer
-  /// when the buffers were full.
+  /// Returns the position of a frame in the sequence. A frame without a number gets the position after the last frame;
+  /// its true position is the same or later. 16-bit numbers are unwrapped over gaps of up to 32767 frames (ten minutes
+  /// at 50 Hz). A frame that is older according to its number and the camera's clock gets its older position. A counted
+  /// gap before a frame with `after_unread` is `unread`. A gap before the following frame is `unread` too, because a
+  /// frame may have been in transfer when the buffers were full.
   [[nodiscard]] FramePlace next(const FrameStamp& as_told);
 
  private:
@@ -65,7 +65,7 @@ class FrameSequence {
   /// Frame periods from the anchor to a frame, by each clock; empty if the clock states no time.
   struct Elapsed {
     std::optional<double> device, host;
-    double period_ns = 0;  ///< of the host's clock
+    double period_ns = 0;  ///< frame period on the host's clock
     /// Returns the number of periods from which to estimate a gap after a restart. It is taken from the camera's clock,
     /// unless the host's clock counts far more periods: then the camera's clock restarted too.
     [[nodiscard]] std::optional<double> best() const;

@@ -29,7 +29,7 @@ struct SourceInfo {
 };
 
 /// A source of frames in order of exposure. It is created stopped. One thread at a time, except stop(), which any
-/// thread may call. After an error `disconnected` the source is dead: destroy it and open a new one.
+/// thread may call. After an error `disconnected` the source is unusable: destroy it and open a new source.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
@@ -40,7 +40,7 @@ class FrameSource {
   [[nodiscard]] virtual const SourceInfo& info() const = 0;
   /// Starts exposing; no effect if started. Discards frames queued by an earlier run.
   [[nodiscard]] virtual Result<void> start() = 0;
-  /// Returns the next frame in order, including incomplete ones (see Frame::status). Errors: `timeout` (no frame in
+  /// Returns the next frame in order, including incomplete frames (see Frame::status). Errors: `timeout` (no frame in
   /// time), `interrupted` (stop() was called), `disconnected` (camera lost, or end of a recording).
   [[nodiscard]] virtual Result<Frame> next(std::chrono::milliseconds timeout) = 0;
   /// Stops exposing and wakes a waiting next(). No effect if stopped.

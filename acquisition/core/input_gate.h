@@ -24,7 +24,7 @@ namespace todbench {
 /// pixels, because it knows their effect on the result.
 class InputGate {
  public:
-  /// Returns true if the frame is a valid exposure: a new one or a repetition of the previous one.
+  /// Returns true if the frame is a valid exposure: a new exposure or a repetition of the previous exposure.
   [[nodiscard]] bool takes(const Frame& frame);
   /// Returns the result; call it after the last frame. Errors: `integrity` if more than 1 % of the frames are damaged.
   /// A valid recording passes: less than one frame in 10^6 appears byte-swapped, rearranged or equal to an older one by

@@ -18,7 +18,7 @@ enum class Rejection {
   incomplete,                ///< reported by the transport
   wrong_size,                ///< differs from the geometry of the source
   repeated,                  ///< the last sequence number again, or the same pixels as an earlier recent frame
-  out_of_order,              ///< the sequence number is below the last one
+  out_of_order,              ///< the sequence number is below the last sequence number
   gapped,                    ///< exposures are missing directly before this frame
   frozen,                    ///< bit-identical to the preceding frame (shutter, stuck transfer)
   saturated,                 ///< more than the permitted share of pixels at zero or full scale
@@ -47,7 +47,7 @@ struct NumberingFaults {
 /// Options of IntegrityGate.
 struct IntegrityOptions {
   int width = 0, height = 0;          ///< expected geometry; 0: not checked
-  double max_saturated_share = 0.01;  ///< of all pixels
+  double max_saturated_share = 0.01;  ///< permitted share of saturated pixels
   /// False only for a simulated sensor without noise: its frames are equal by design and do not indicate a correction.
   bool reject_frozen = true;
 };

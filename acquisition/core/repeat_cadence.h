@@ -8,17 +8,18 @@
 
 namespace todbench {
 
-/// Learns how often a camera sends each exposure, from frames that equal their predecessor bit for bit. With noise no
-/// two exposures are equal, so a rhythm over 8 exposures does not arise by chance. A camera that is stuck has no
+/// Determines how often a camera sends each exposure, from frames that equal their predecessor bit for bit. With noise
+/// no two exposures are equal, so a rhythm over 8 exposures does not arise by chance. A camera that is stuck has no
 /// rhythm. One thread at a time.
 class RepeatCadence {
  public:
   void see(bool equals_the_last);
-  /// Returns the frames per exposure; 1 also while the number is not known yet.
+  /// Returns the frames per exposure; 1 while the number is unknown.
   [[nodiscard]] int times() const { return times_; }
-  /// Returns whether the last frame fits the rhythm: its exposure was not sent more often than the others.
+  /// Returns whether the last frame fits the rhythm: its exposure was not sent more often than other exposures.
   [[nodiscard]] bool in_rhythm() const { return times_ > 1 && run_ <= times_; }
-  /// Returns the number of frames in the rhythm that equal their predecessor, including those from which it was learnt.
+  /// Returns the number of frames in the rhythm that equal their predecessor, including the frames from which the
+  /// rhythm was determined.
   [[nodiscard]] std::uint64_t repeats() const { return repeats_; }
   /// Returns one sentence for the user; empty if each exposure is sent once.
   [[nodiscard]] std::string sentence() const;
@@ -26,7 +27,7 @@ class RepeatCadence {
  private:
   void learn();
 
-  std::deque<int> runs_;  ///< frames of each of the last exposures, the newest last; the first one may be truncated
+  std::deque<int> runs_;  ///< frames of each of the last exposures, the newest last; the first number may be too small
   int run_ = 0;           ///< frames of the present exposure
   int times_ = 1;
   std::uint64_t repeats_ = 0, before_learnt_ = 0;

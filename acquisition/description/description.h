@@ -32,9 +32,9 @@ class Description {
   /// Returns the reasons why this feature must not be evaluated: it depends on a node that does not exist (and would
   /// count as 0) or on a division that can raise SIGFPE. Empty for a feature that does not exist.
   [[nodiscard]] std::vector<DescriptionFault> faults_of(const std::string& feature) const;
-  /// Returns the nodes whose values are lengths of registers that this feature depends on and are known only to the
-  /// camera. Each node follows the nodes it depends on. Check that the values are 1 ... 64 KiB before evaluating the
-  /// feature.
+  /// Returns the nodes that contain lengths of registers on which this feature depends, if only the camera stores these
+  /// lengths. Each node follows the nodes on which it depends. Check that the values are 1 ... 64 KiB before evaluating
+  /// the feature.
   [[nodiscard]] std::vector<std::string> lengths_of(const std::string& feature) const;
 
  private:

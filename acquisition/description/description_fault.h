@@ -25,7 +25,7 @@ enum class DescriptionFaultKind {
 struct DescriptionFault {
   DescriptionFaultKind kind = DescriptionFaultKind::not_xml;
   std::string node;      ///< printable name; empty: the description as a whole
-  std::string sentence;  ///< for people, printable, without the name of the node: "its length is -1 bytes"
+  std::string sentence;  ///< printable message without the name of the node: "its length is -1 bytes"
 };
 
 }  // namespace todbench

@@ -17,7 +17,7 @@
 
 namespace todbench {
 
-/// Maximum number of elements and text pieces of a description. The largest published one has 29 000 elements.
+/// Maximum number of elements and text pieces of a description. The largest published description has 29 000 elements.
 inline constexpr std::size_t most_description_pieces = 400'000;
 
 /// Kinds of nodes.
@@ -59,7 +59,7 @@ struct DescriptionNode {
   NodeKind kind = NodeKind::other;
   std::vector<NodeReference> references;
   std::vector<std::size_t> parts;      ///< nodes inside a register or an enumeration that it reads
-  std::optional<std::size_t> inside;   ///< of an entry: the register that contains it
+  std::optional<std::size_t> inside;   ///< register that contains an entry
   std::vector<std::string> lengths;    ///< <Length>, as in the text
   std::vector<std::string> values;     ///< <Value>
   std::vector<std::string> formulas;   ///< Formula, FormulaTo, FormulaFrom

@@ -17,13 +17,14 @@ inline constexpr std::uint64_t most_description_bytes = 16U << 20U;
 /// Location of a description.
 struct DescriptionUrl {
   enum class Place {
-    camera,  ///< in the camera's memory, at `address`
-    file,    ///< on this host, at `path`
+    camera,  ///< the description is in the camera's memory, at `address`
+    file,    ///< the description is on this host, at `path`
   };
   Place place = Place::camera;
   std::uint32_t address = 0;
   std::uint32_t bytes = 0;
-  std::string path;     ///< in the camera: the file name; its extension shows whether the content is zipped
+  std::string path;     ///< path of the file; in the camera only the file name, whose extension shows whether the
+                        ///< content is zipped
   bool zipped = false;  ///< always false for files
 };
 

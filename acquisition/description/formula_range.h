@@ -14,7 +14,7 @@
 
 namespace todbench {
 
-/// Range of integers, both ends included.
+/// Range of integers, both limits included.
 struct IntegerRange {
   std::int64_t low = std::numeric_limits<std::int64_t>::min();
   std::int64_t high = std::numeric_limits<std::int64_t>::max();

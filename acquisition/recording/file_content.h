@@ -20,7 +20,7 @@ enum class FileKind {
 /// Content of a file.
 struct FileContent {
   FileKind kind = FileKind::unknown;
-  std::string name{};   ///< of a foreign format, with its article: "a PNG picture"
+  std::string name{};   ///< name of a foreign format, with its article: "a PNG picture"
   std::string start{};  ///< the first bytes of an unknown file, as hexadecimal digits
 };
 

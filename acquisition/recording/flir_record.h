@@ -62,7 +62,7 @@ struct FlirCamera {
   FlirObjectParameters object;
   std::string model, serial, software, lens, lens_serial;
   double frame_rate_hz = 0;                  ///< 0: not stated
-  double range_low_k = 0, range_high_k = 0;  ///< of the measuring range
+  double range_low_k = 0, range_high_k = 0;  ///< limits of the measuring range
   int raw_median = 0;                        ///< counts, as the camera states it; 0: not stated
 };
 
@@ -74,7 +74,7 @@ struct FlirSeqFrame {
   std::uint64_t pixel_offset = 0;  ///< from the start of the bytes
   std::uint64_t pixel_bytes = 0;
   FlirStorage storage = FlirStorage::raw;
-  bool big_endian = false;  ///< for raw pixels
+  bool big_endian = false;  ///< true: raw pixels have the high byte first
   int width = 0, height = 0;
   std::int64_t device_time_ns = 0;           ///< the camera's clock, since 1970; 0: not stated
   std::shared_ptr<const FlirCamera> camera;  ///< shared by frames of one camera and settings; null: not stated

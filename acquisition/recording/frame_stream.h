@@ -21,7 +21,7 @@ namespace todbench {
 
 /// Start of a recording.
 struct StreamHeader {
-  SourceInfo info;  ///< of the camera, as read back when the recording began
+  SourceInfo info;  ///< description of the camera, as read back when the recording began
   std::string created_utc;
   std::int64_t created_host_ns = 0;                ///< CLOCK_MONOTONIC at `created_utc`
   std::map<std::string, std::string> annotations;  ///< additional information, e.g. about changes of the target

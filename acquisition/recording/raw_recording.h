@@ -18,7 +18,7 @@ struct RawRecordingFormat {
   int width = 0, height = 0;
   int significant_bits = 16;
   double frame_rate_hz = 0;     ///< 0: unknown
-  RadiometricScale scale = {};  ///< of the values in the file; uncalibrated unless stated
+  RadiometricScale scale = {};  ///< scale of the values in the file; uncalibrated unless stated
   RawByteOrder byte_order = RawByteOrder::little;
   RawSign sign = RawSign::without;
 };

@@ -16,8 +16,8 @@ namespace todbench {
 struct RecordedFrame {
   cv::Mat1w counts;
   std::int64_t device_time_ns = 0;        ///< 0: not stated
-  std::optional<std::uint64_t> sequence;  ///< empty: one more than that of the previous frame
-  std::int64_t host_time_ns = 0;          ///< on the recording host; 0: not stated
+  std::optional<std::uint64_t> sequence;  ///< empty: the sequence number of the previous frame plus one
+  std::int64_t host_time_ns = 0;          ///< time on the recording host; 0: not stated
   FrameStatus status = FrameStatus::complete;
   Numbering numbering = Numbering::counted;
   CorrectionState correction = CorrectionState::unknown;
@@ -28,7 +28,7 @@ struct RecordedFrame {
 /// The call that failed on the recorded camera.
 enum class FailedCall { next, correct_nonuniformity };
 
-/// A recorded failure of the camera. It takes the place of a frame or of a correction.
+/// A recorded failure of the camera. The failure replaces a frame or a correction.
 struct RecordedFailure {
   std::uint64_t before_frame = 0;  ///< index of the next frame
   Error error;

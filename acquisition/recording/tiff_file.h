@@ -89,10 +89,10 @@ class TiffRows {
 /// Consecutive pictures of ImageJ that share one directory ("images=N" in the description).
 struct ImageJStack {
   std::uint64_t images = 0;
-  std::uint64_t offset = 0;  ///< of the first pixel in the file
+  std::uint64_t offset = 0;  ///< position of the first pixel in the file
 };
 /// Reads the stack of the first page. Empty if the file states one image or does not state the number. Error:
-/// `invalid_input` (the file does not hold the stated number).
+/// `invalid_input` (the file does not contain the stated number).
 [[nodiscard]] Result<std::optional<ImageJStack>> image_j_stack(const TiffFile& file, std::uint64_t directories);
 
 }  // namespace todbench

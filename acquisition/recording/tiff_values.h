@@ -19,7 +19,7 @@ enum class ValueUnit { counts, kelvin, celsius };
 /// Conversion of values to counts: count = (value - offset) / step, rounded.
 struct ValueCounts {
   double offset = 0, step = 1;
-  std::optional<ValueUnit> unit{};  ///< of floating-point values
+  std::optional<ValueUnit> unit{};  ///< unit of floating-point values
 
   /// Converts values. Error: `invalid_input` (a value that is not a number, is a fraction although the unit is counts,
   /// or is outside 0 ... 65535 counts).

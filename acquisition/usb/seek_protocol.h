@@ -30,7 +30,7 @@ enum class SeekModel {
 struct SeekGeometry {
   std::uint16_t product_id;
   int raw_width, raw_height;  ///< words
-  cv::Rect picture;           ///< in the raw frame
+  cv::Rect picture;           ///< area of the picture in the raw frame
   std::size_t kind_word, counter_word, temperature_word;
 
   [[nodiscard]] std::size_t frame_words() const {
@@ -61,7 +61,7 @@ enum class SeekRequest : std::uint8_t {
   get_factory_settings = 0x58,
 };
 
-/// One control transfer. `data` holds the bytes to send; in a reading request only its size is used.
+/// One control transfer. `data` contains the bytes to send; in a reading request only its size is used.
 struct SeekTransfer {
   SeekRequest request;
   std::vector<std::uint8_t> data;

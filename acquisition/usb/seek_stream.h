@@ -35,7 +35,7 @@ class SeekStream {
   SeekStream(const SeekStream&) = delete;
   SeekStream& operator=(const SeekStream&) = delete;
 
-  /// Returns the the next arrival. Errors: `timeout`, `interrupted` (end() was called), `disconnected`. Any thread.
+  /// Returns the next arrival. Errors: `timeout`, `interrupted` (end() was called), `disconnected`. Any thread.
   [[nodiscard]] Result<SeekArrival> next(std::chrono::milliseconds timeout);
   /// Ends the stream and all present and later calls of next() within milliseconds. Any thread, one at a time.
   void end();
@@ -65,7 +65,7 @@ class SeekStream {
   std::size_t most_waiting_;
   std::vector<std::uint8_t> request_, frame_;  ///< buffers of the transfers
   std::size_t received_ = 0;                   ///< bytes of the present frame received so far
-  int failures_ = 0;                           ///< in succession
+  int failures_ = 0;                           ///< successive failures
   TransferPtr requesting_, reading_;
   libusb_hotplug_callback_handle hotplug_{};
 

@@ -20,11 +20,12 @@ struct LeptonTelemetry {
   std::uint16_t revision = 0;
   std::uint32_t time_ms = 0;  ///< since power-up
   std::uint32_t status = 0;
-  std::uint32_t frame_counter = 0;         ///< at the sensor's own rate of 26 Hz; a repeated frame repeats it
-  double fpa_temperature_k = 0;            ///< of the detector
-  double fpa_temperature_ffc_k = 0;        ///< at the last flat-field correction
+  std::uint32_t frame_counter = 0;         ///< number of the frame at the sensor's own rate of 26 Hz; unchanged in a
+                                           ///< repeated frame
+  double fpa_temperature_k = 0;            ///< temperature of the detector
+  double fpa_temperature_ffc_k = 0;        ///< temperature of the detector at the last flat-field correction
   std::uint32_t time_last_ffc_ms = 0;      ///< since power-up, of the last flat-field correction
-  std::optional<double> kelvin_per_count;  ///< in the linear temperature mode; empty: counts are proportional to
+  std::optional<double> kelvin_per_count;  ///< scale in the linear temperature mode; empty: counts are proportional to
                                            ///< radiant flux
 
   [[nodiscard]] FfcState ffc_state() const { return static_cast<FfcState>(status >> 4U & 3U); }

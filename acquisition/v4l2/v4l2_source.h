@@ -41,7 +41,7 @@ class V4l2Source final : public FrameSource {
 
   /// A frame from the receiving thread.
   struct Arrival {
-    Frame frame;  ///< without sequence and scale
+    Frame frame;  ///< the frame without sequence and scale
     std::uint32_t sequence = 0;
     std::optional<LeptonTelemetry> telemetry;
     bool after_unread = false;  ///< frames directly before this one were dropped because the inbox was full
@@ -112,7 +112,7 @@ class V4l2Source final : public FrameSource {
   std::mutex control_;  ///< serialises start, stop, get and set; locked before inbox_.mutex
   VideoDevice device_;  ///< used by the receiving thread while it runs, except for controls
   std::vector<VideoControl> controls_;
-  std::optional<BosonPort> serial_port_;  ///< of a Boson
+  std::optional<BosonPort> serial_port_;  ///< serial port of a Boson
   std::string serial_port_problem_;       ///< reason why it is not used; empty: no problem
   mutable Inbox inbox_;
   std::jthread receiver_;

@@ -31,7 +31,7 @@ struct VideoBuffer {
   std::uint32_t sequence = 0;
   std::int64_t time_ns = 0;  ///< 0: none
   bool damaged = false;      ///< V4L2_BUF_FLAG_ERROR, or an empty buffer
-  bool oversized = false;    ///< states more bytes than its buffer or the format holds
+  bool oversized = false;    ///< states more bytes than its buffer or the format can contain
 };
 
 /// An open node. Errors of every method: `disconnected` if the device is gone (ENODEV), otherwise as stated. Not
@@ -104,7 +104,7 @@ class VideoDevice {
   VideoCapability capability_;
   std::vector<Mapping> buffers_;
   bool requested_ = false;
-  std::size_t image_bytes_ = 0;  ///< of the format, as the driver reports; 0: unknown
+  std::size_t image_bytes_ = 0;  ///< size of a frame of the format, as the driver reports it; 0: unknown
 };
 
 /// Returns the error of an ioctl: `disconnected` for a device that is gone, otherwise `otherwise`.

@@ -42,16 +42,16 @@ struct VideoLayout {
   std::size_t filler_bytes = 0;  ///< after the last row, from a driver that transfers whole pages
   std::string pixel_format;      ///< PFNC name of the counts
   int significant_bits = 16;
-  cv::Rect picture;        ///< rows that hold counts
-  int telemetry_rows = 0;  ///< of a Lepton, below the picture
+  cv::Rect picture;        ///< rows that contain counts
+  int telemetry_rows = 0;  ///< telemetry rows of a Lepton below the picture
   /// Rows without picture, all above or all below it. `picture` then begins at the first row that may belong to either.
   /// Their position is determined in each frame: they differ more from their neighbours than rows of the picture do.
   int foreign_rows = 0;
   double kelvin_per_count = 0;  ///< 0: the family does not state it
 };
 
-/// Maximum number of additional rows that are taken as telemetry if a mode is higher than another mode of the same
-/// camera and width. Telemetry of the Boson and the Tau has up to 4 rows.
+/// Maximum number of additional rows that are interpreted as telemetry if a mode is higher than another mode of the
+/// same camera and width. Telemetry of the Boson and the Tau has up to 4 rows.
 inline constexpr int most_foreign_rows = 4;
 
 /// The user's choice of a mode; empty members are chosen automatically.

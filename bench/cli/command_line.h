@@ -32,7 +32,7 @@ void add_examples(CLI::App& app);
 
 /// Candidates for the completion of a word.
 struct Completion {
-  std::vector<std::string> words;  ///< in the order of display; also words that do not begin with the typed letters
+  std::vector<std::string> words;  ///< in the order of display; includes words that do not begin with the typed letters
   bool files = false;              ///< also any file or folder
 };
 

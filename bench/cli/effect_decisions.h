@@ -35,7 +35,7 @@ struct DecidedEffects {
 };
 
 /// Returns the sentence that explains why every effect that is not neutral is simulated: the criteria of the planner
-/// hold for triangles, not for this scene. `scene`: "the threshold of bars", "the identification of targets".
+/// are valid for triangles, not for this scene. `scene`: "the threshold of bars", "the identification of targets".
 [[nodiscard]] std::string no_criterion_for(const std::string& scene);
 
 /// Prints the table of decisions: effects that are neutral in the sensor in one line, or with their reasons.

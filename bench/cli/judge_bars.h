@@ -13,9 +13,9 @@ namespace todbench {
 
 /// Arguments of both options.
 struct BarsArguments {
-  /// `session`: folder of the session. `out`: new folder for the pictures. `answers`: folder of --bars with the answers
-  /// of a person; empty: no answers are read.
-  std::string session, out, answers;
+  std::string session,  ///< folder of the session
+      out,              ///< new folder for the pictures
+      answers;          ///< folder of --bars with the answers of a person; empty: no answers are read
   /// Writes pictures of bars and spots for a person.
   bool questions = false;
   /// Selection of decisions.

@@ -17,14 +17,15 @@ namespace todbench {
 /// Returns 1 for each pixel with the lowest or highest possible count, otherwise 0.
 [[nodiscard]] cv::Mat1b saturated_pixels(const Frame& frame);
 
-/// Counts the pixels at the highest and the lowest value of a recording. Noise spreads the values of a flat scene, so
-/// that fewer pixels have an end value than the value next to it. A device that clips below full scale collects pixels
-/// at an end value.
+/// Counts the pixels with the lowest and with the highest value of a recording, the extreme values. In a flat scene
+/// with noise, fewer pixels have an extreme value than the value next to it. If a device clips below full scale, many
+/// pixels have an extreme value.
 class EndValues {
  public:
   /// Adds a picture. `usable`: pixels that are not 0 are counted; empty: all pixels.
   void add(const cv::Mat1f& picture, const cv::Mat1b& usable);
-  /// Returns the share of pixels at an end value where they exceed the next value by five standard errors; 0: none.
+  /// Returns the share of pixels with an extreme value if their number exceeds the number at the next value by five
+  /// standard errors; otherwise 0.
   [[nodiscard]] double clipped_share() const;
 
  private:
@@ -33,16 +34,16 @@ class EndValues {
     double pixels = 0, next_pixels = 0;
     void add(float value);
   };
-  End high_, low_;  ///< of the values, and of the values with the other sign
+  End high_, low_;  ///< highest and lowest value; the lowest as the highest of the values with the other sign
   double pixels_ = 0;
 };
 
-/// Properties of a recording that limit which noise it can show.
+/// Properties of a recording that limit the noise that can be measured from it.
 struct NoiseLimits {
-  double saturated_share = 0;  ///< of the pixels of all frames, see saturated_pixels()
-  double unit_per_count = 1;   ///< in the unit of the noise; 0: unknown
-  int counts_per_step = 1;     ///< of CountStep
-  double clipped_share = 0;    ///< of EndValues
+  double saturated_share = 0;  ///< share of saturated_pixels() in all frames
+  double unit_per_count = 1;   ///< one count in the unit of the noise; 0: unknown
+  int counts_per_step = 1;     ///< CountStep::counts_per_step()
+  double clipped_share = 0;    ///< EndValues::clipped_share()
 };
 /// Reason why a recording does not show the noise of its camera.
 struct NoiseFault {

@@ -16,20 +16,24 @@ namespace todbench {
 
 /// Options of `todbench range`.
 struct RangeOptions {
-  /// Names and files. `atmosphere`: air path (load_atmosphere()). `haze`: aerosol of the built-in atmospheres. `band`:
-  /// spectral band LOW-HIGH in um; empty: band of the sensor. `sensor`: sensor of the formula models; empty: sensor of
-  /// the session. `mrtd_file`, `mtdp_file`, `ctf_file`: CSV files that replace the formulas. `svg`, `page`: output
-  /// files of the figure and of the page.
-  std::string atmosphere, haze = "rural-23km", band, sensor, mrtd_file, mtdp_file, ctf_file, svg, page;
+  std::string atmosphere,   ///< name or file of the air path (load_atmosphere())
+      haze = "rural-23km",  ///< aerosol of the built-in atmospheres
+      band,                 ///< spectral band LOW-HIGH in um; empty: band of the sensor
+      sensor,               ///< name or file of the sensor of the formula models; empty: sensor of the session
+      mrtd_file,            ///< CSV file that replaces the MRTD formula; empty: none
+      mtdp_file,            ///< CSV file that replaces the formula of the MTDP-like curve; empty: none
+      ctf_file,             ///< CSV file that replaces the CTF formula; empty: none
+      svg,                  ///< output file of the figure; empty: none
+      page;                 ///< output file of the page; empty: none
   /// Transfer that converts the TOD thresholds to the MTDP-like curve; empty: the curve comes from the formula or a
   /// file.
   std::optional<TodTransfer> transfer{};
   /// Models to evaluate.
   std::vector<RangeModel> models{RangeModel::tod};
-  /// Temperatures in K. `background_k`: background; if stated, the contrast is computed from radiances. `air_k`: air;
-  /// empty: temperature of the model atmosphere. `surround_k`: reflected surroundings; empty: temperature of the
-  /// background. `target_contrast`: luminance contrast of the target for TTP; empty: |dT| / (2 scene contrast).
-  std::optional<double> background_k, air_k, surround_k, target_contrast;
+  std::optional<double> background_k,  ///< background temperature; if stated, radiances determine the contrast
+      air_k,                           ///< air temperature; empty: temperature of the model atmosphere
+      surround_k,                      ///< temperature of the reflected surround; empty: background temperature
+      target_contrast;                 ///< luminance contrast of the target for TTP; empty: |dT| / (2 scene contrast)
   /// Emissivity of target and background.
   double emissivity = 1;
   /// Contrast of the target in K, as stated on the command line.
@@ -40,15 +44,15 @@ struct RangeOptions {
   std::string curve_observer{};
   /// Phrase with the observers that the file of --m75-of states.
   std::string m75_observer{};
-  /// `n50`, `mtdp_n50`: cycles on the target for 50 % in ACQUIRE and in the MTDP-like model. `extinction_u_percent`,
-  /// `curve_u_percent`: relative standard uncertainties of the extinction, and of the MRTD, MTDP-like and CTF
-  /// thresholds; they widen the intervals.
-  double n50 = 6, mtdp_n50 = 6, extinction_u_percent = 0, curve_u_percent = 0;
+  double n50 = 6,                ///< cycles on the target for 50 % in ACQUIRE
+      mtdp_n50 = 6,              ///< cycles on the target for 50 % in the MTDP-like model
+      extinction_u_percent = 0,  ///< relative standard uncertainty of the extinction; it widens the intervals
+      curve_u_percent = 0;       ///< relative standard uncertainty of MRTD, MTDP-like and CTF thresholds; it widens
+                                 ///< intervals
   /// Relative standard uncertainty of M75 in percent; it widens the interval of the TOD model.
   double m75_u_percent = 0;
-  /// `cn2`: structure parameter of the turbulence along the path, m^(-2/3); 0: none. `tolerance_percent`: change of the
-  /// acuity below which the TOD model skips turbulence.
-  double cn2 = 0, tolerance_percent = 1;
+  double cn2 = 0,             ///< structure parameter of the turbulence along the path, m^(-2/3); 0: no turbulence
+      tolerance_percent = 1;  ///< change of the acuity below which the TOD model skips turbulence
   /// Grid of targets. Without sizes no grid is computed.
   RangeGridAxes grid{};
   /// Parameters of the formula models.

@@ -10,8 +10,7 @@ namespace todbench {
 
 /// Treatment of a folder with results.
 enum class ExistingResults { refused, overwritten };
-/// Checks that a folder for results is new, empty, or allowed to be overwritten. Errors: `invalid_input` in one
-/// sentence.
+/// Checks that a folder for results is new, empty, or allowed to be overwritten. Errors: `invalid_input`.
 [[nodiscard]] Result<void> check_result_folder(const std::filesystem::path& folder, ExistingResults existing);
 /// Checks the folder in the same way and creates it.
 [[nodiscard]] Result<void> make_result_folder(const std::filesystem::path& folder, ExistingResults existing);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Settings read back from a camera: comparison with the written settings, and of the end of a run with its start.
+// Settings read back from a camera: comparison with the written settings, and with the settings at the start of the
+// run.
 #pragma once
 
 #include <map>

@@ -44,7 +44,7 @@ struct CameraLibrary {
 /// Returns the library; empty if this build has none.
 [[nodiscard]] std::optional<CameraLibrary> camera_library();
 
-/// Camera, target in front of it, and host that controls a measurement with both.
+/// Camera and target of a bench, and the host that controls the measurement.
 struct OpenedBench {
   std::unique_ptr<FrameSource> camera;
   std::unique_ptr<Target> target;

@@ -15,7 +15,7 @@
 namespace todbench {
 
 /// Returns the names for `--camera` of the cameras that this build can emulate: "gige", "gige-ax5" and other families
-/// on plain sockets, "u3v" (USB3 Vision), "seek" (a CompactPRO; the sensor has to have 320 x 240 pixels), "v4l2" (Y16
+/// on plain sockets, "u3v" (USB3 Vision), "seek" (a CompactPRO; the sensor must have 320 x 240 pixels), "v4l2" (Y16
 /// with telemetry, like a Lepton), "v4l2-yuyv" (temperatures below a picture, like a Tiny1).
 [[nodiscard]] std::vector<std::string> emulated_cameras();
 
@@ -68,9 +68,9 @@ enum class DemonstrationLength {
 /// Returns the options of start_laboratory(). Errors: those of sensor and plates.
 [[nodiscard]] Result<LaboratoryOptions> laboratory_options(const EmulationArguments& arguments);
 
-/// Starts camera, black body and plate stage. They settle faster than a real bench: black body with 4 ms time constant
-/// and stable after 10 ms, 50 ms per plate or mounting, stage 1 m/s and 5 ms to come to rest. A shift of some
-/// millimetres ends within a frame of 20 ms.
+/// Starts camera, black body and plate stage. They settle faster than a real bench. The black body has a time constant
+/// of 4 ms and is stable after 10 ms. A change of plate or mounting takes 50 ms. The stage moves at 1 m/s and comes to
+/// rest in 5 ms. A shift of some millimetres takes less than a frame of 20 ms.
 [[nodiscard]] Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& arguments);
 
 /// Returns the plan with the camera and instruments of a laboratory.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Comparison of the mean picture of the plate with the picture of a sensor model at the same place.
+// Comparison of the mean picture of the plate with the picture of a sensor model at the same position.
 #pragma once
 
 #include "acquisition/base/result.h"
@@ -8,9 +8,9 @@
 
 namespace todbench {
 
-/// Computes the model's noise-free picture of the plate at the observed place, scale and rotation. Contrast, level and
-/// the residuals of place, scale and rotation are fitted by least squares. Errors: `invalid_input` (the model and the
-/// camera differ in the number of pixels, or the contrast cannot be fitted).
+/// Computes the model's noise-free picture of the plate at the observed position, scale and rotation. Contrast, level
+/// and the residuals of position, scale and rotation are fitted by least squares. Errors: `invalid_input` (the model
+/// and the camera differ in the number of pixels, or the contrast cannot be fitted).
 [[nodiscard]] Result<PlatePicture> plate_picture(const PlateView& seen, const TargetPlate& plate,
                                                  const SensorModel& model, SceneMotion motion);
 

@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Record of the processing so far.
+/// Record of the processing.
 struct ProcessingRecord {
   std::vector<double> frame_ms;  ///< processing time of every complete frame, all stages together
   std::size_t clipped = 0;       ///< pixels clipped at the range of the camera's counts

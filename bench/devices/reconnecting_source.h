@@ -44,7 +44,7 @@ class ReconnectingSource final : public FrameSource {
   /// settings, geometry or scale differ; the message states which), `interrupted` within 0.1 s of a stop request in
   /// every state. A connection attempt under way then ends on its own thread.
   [[nodiscard]] Result<void> recover(std::stop_token stop);
-  /// Confirms that the plate is at its former place. This is the last step of a reconnection.
+  /// Confirms that the plate is at its former position. This is the last step of a reconnection.
   void confirm_registration();
 
   /// Returns the state of the connection.

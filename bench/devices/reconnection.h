@@ -17,8 +17,8 @@ enum class LinkState {
   waiting,      ///< back-off before the next attempt
   opening,      ///< the camera with the same serial number is being opened
   restoring,    ///< all settings are written and read back; the stream is started
-  registering,  ///< the plate is located at its former place
-  gave_up,      ///< final: away too long, or another camera, settings or place
+  registering,  ///< the plate is located at its former position
+  gave_up,      ///< final: the camera was away too long, or camera, settings or plate position differ
   aborted,      ///< final: stopped on request
 };
 
@@ -26,7 +26,7 @@ enum class LinkState {
 enum class LinkEvent {
   done,         ///< the task of the state succeeded
   lost,         ///< no frames and no response
-  failed,       ///< the attempt failed; the next one may succeed
+  failed,       ///< the attempt failed; the next attempt may succeed
   refused,      ///< the camera is there but differs from before
   out_of_time,  ///< away longer than the patience
   abort,        ///< stopped on request
@@ -52,7 +52,7 @@ inline constexpr std::array all_link_events{LinkEvent::done,    LinkEvent::lost,
 ///   any but a final one                abort -> aborted
 [[nodiscard]] std::optional<LinkState> next_state(LinkState state, LinkEvent event);
 
-/// Returns whether no event leaves the state.
+/// Returns whether no event changes the state.
 [[nodiscard]] constexpr bool is_final(LinkState state) {
   return state == LinkState::gave_up || state == LinkState::aborted;
 }

@@ -19,12 +19,12 @@ struct StageMovement {
 };
 
 /// Largest accepted deviation of StageFit::seen_per_asked from the unit matrix, per element. The check adds four
-/// standard errors. Shifts of a run reach 0.7 px: an error of a tenth costs less than 0.2 % of acuity.
+/// standard errors. Shifts of a run reach 0.7 px: an error of 0.1 reduces the acuity by less than 0.2 %.
 inline constexpr double most_stage_deviation = 0.1;
 
-/// Opens camera and target of the plan, presents its first plate at its highest contrast in the centre, and moves the
-/// stage by one pixel to either side along x, then along y. Errors: `invalid_input` (no stage that sets positions),
-/// `calibration` (the pictures do not show the plate), those of open_bench() and measure().
+/// Opens camera and target of the plan and presents the first plate at the highest contrast in the centre. Then moves
+/// the stage by one pixel to either side, first along x and then along y. Errors: `invalid_input` (no stage that sets
+/// positions), `calibration` (the pictures do not show the plate), those of open_bench() and measure().
 [[nodiscard]] Result<StageMovement> check_stage_movement(const LoadedPlan& loaded, const SayProgress& on_progress,
                                                          std::stop_token stop);
 

@@ -34,9 +34,9 @@ class DriftWindow {
   std::deque<LevelAt> points_;
 };
 
-/// Starts the source, takes frames until the conditions hold, and stops it. Returns a sentence about the warm-up; empty
-/// without conditions. Errors: `calibration` (the camera still drifts at the end of the time limit), those of
-/// FrameTaker::next().
+/// Starts the source, reads frames until the conditions are met, and stops the source. Returns a sentence about the
+/// warm-up; empty without conditions. Errors: `calibration` (the camera still drifts at the end of the time limit),
+/// those of FrameTaker::next().
 [[nodiscard]] Result<std::string> wait_for_warm_up(FrameSource& source, const WarmUpPlan& plan,
                                                    const FrameTakerOptions& taking, const std::stop_token& stop);
 

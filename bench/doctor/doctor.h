@@ -48,7 +48,7 @@ struct SystemFacts {
   std::optional<std::string> firewall_rules;  ///< output of `nft list ruleset` and `iptables-save`
   std::optional<bool> clock_synchronised;     ///< according to the kernel
   std::optional<double> clock_step_s;         ///< change of the wall clock against the monotonic clock during the check
-  std::optional<std::int64_t> disk_free_bytes;  ///< on the disk of the sessions
+  std::optional<std::int64_t> disk_free_bytes;  ///< free space on the disk of the sessions
   std::optional<double> disk_bytes_per_s;       ///< write speed including flush
 };
 
@@ -62,8 +62,8 @@ struct SystemFacts {
 [[nodiscard]] DoctorCheck check_mtu(const std::filesystem::path& root, const DoctorDemand& demand);
 /// Checks for firewall rules that drop UDP.
 [[nodiscard]] DoctorCheck check_firewall(const std::filesystem::path& root, const SystemFacts& facts);
-/// Checks the active network interfaces: warns of several interfaces (a camera may answer on the wrong one), and of
-/// wireless or slow ones.
+/// Checks the active network interfaces: warns of several interfaces (a camera may answer on the wrong interface), and
+/// of wireless or slow interfaces.
 [[nodiscard]] DoctorCheck check_interfaces(const std::filesystem::path& root);
 /// Checks usbfs_memory_mb against 8 frames in flight.
 [[nodiscard]] DoctorCheck check_usb_memory(const std::filesystem::path& root, const DoctorDemand& demand);

@@ -17,27 +17,27 @@ namespace todbench {
 
 /// Selection of decisions.
 struct BarsRequest {
-  /// If true, uses all places. Otherwise uses the bars of each axis with the frequency nearest to
-  /// `frequency_per_pitch`, and the spot with the size nearest to `spot_px`.
+  /// If true, uses all bars and spots of the session. Otherwise uses the bars of each axis with the frequency nearest
+  /// to `frequency_per_pitch`, and the spot with the size nearest to `spot_px`.
   bool all_places = false;
   /// Frequency in cycles per pitch, as in the plan.
   double frequency_per_pitch = 0.25;
   /// Side of the spot in pixels, as in the plan.
   double spot_px = 3;
-  int times = 1;           ///< decisions at each contrast of each set-up of a place
+  int times = 1;           ///< decisions at each contrast of each set-up, for each group of bars or spot
   int magnification = 12;  ///< screen pixels per pixel of the camera
   std::uint64_t seed = 1;
 };
 
-/// One decision between two windows of the same place, contrast and set-up. The windows come from two frames if the
-/// session keeps more than one.
+/// One decision between the two windows of a group of bars or a spot, at one contrast in one set-up. The windows come
+/// from two frames if the session keeps more than one.
 struct BarsQuestion {
   std::size_t target_picture = 0, other_picture = 0;  ///< indices in KeptBars::pictures
   bool target_left = false;
 };
 
-/// Returns all decisions of a request in random order. Errors: `invalid_input` (no place, or fewer than five set-ups,
-/// which do not give a threshold).
+/// Returns all decisions of a request in random order. Errors: `invalid_input` (no bars or spots, or fewer than five
+/// set-ups, which are not enough for a threshold).
 [[nodiscard]] Result<std::vector<BarsQuestion>> bars_questions(const KeptBars& kept, const BarsRequest& request);
 /// Returns both windows side by side, separated by a strip of background: 8-bit grey, enlarged by bicubic
 /// interpolation. The grey scale spans the larger of three contrasts and six standard deviations of both windows. It

@@ -31,7 +31,7 @@ struct BlindSource {
 struct BlindPatch {
   std::size_t source = 0;
   JudgedTrial judged;  ///< patch, cut to the field that all sources have in common
-  /// Samples per pixel and axis. A pixel has the same size on the screen for every source, whatever its number of
+  /// Samples per pixel and axis. A pixel has the same size on the screen for every source, regardless of its number of
   /// samples.
   int samples_per_pixel = 1;
 };
@@ -64,13 +64,13 @@ struct BlindResult {
 [[nodiscard]] Result<std::vector<BlindPatch>> blind_order(const std::vector<BlindSource>& sources, int per_size,
                                                           std::uint64_t seed);
 
-/// Fits the answers of each source and compares each with the first. Errors: `invalid_input` (a source without
-/// answers).
+/// Fits the answers of each source, and compares each source with the first source. Errors: `invalid_input` (a source
+/// without answers).
 [[nodiscard]] Result<BlindResult> blind_result(const std::vector<std::string>& sources,
                                                const std::vector<BlindAnswer>& answers, const Plan& plan);
 
 /// Returns the reason why the ratio of a source to the first source has no value at a contrast: the threshold of one of
-/// them may not be used. Empty: the ratio has a value.
+/// the two sources may not be used. Empty: the ratio has a value.
 [[nodiscard]] std::string why_withheld(const BlindResult& result, std::size_t source, double set_delta_t_k);
 /// Returns the exit code: 0 if every threshold of every source may be used (why_undecided()), otherwise 3.
 [[nodiscard]] int exit_code(const BlindResult& result);

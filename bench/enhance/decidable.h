@@ -10,10 +10,10 @@
 namespace todbench {
 
 /// Returns the reason why a point may not be used, in a sentence about `name`: no threshold, no interval, or a finding
-/// that makes it unfit. Empty: it may be used.
+/// that makes the point unfit. Empty: the point may be used.
 [[nodiscard]] std::string why_undecided(const std::string& name, const TodPoint& point);
 /// Returns the reason why the point of a result at this contrast may not be used: no answers, no threshold, no
-/// interval, or a finding that makes it unfit. Empty: it may be used.
+/// interval, or a finding that makes the point unfit. Empty: the point may be used.
 [[nodiscard]] std::string why_undecided(const PackageResult& result, double set_delta_t_k);
 /// Removes the values of ratios at contrasts at which the point of `with` or of `without` may not be used, and stores
 /// the reason.

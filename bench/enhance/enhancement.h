@@ -39,15 +39,15 @@ struct PairedRatio {
 struct PackageResult {
   std::string name;
   std::vector<Trial> trials;
-  EndTrials at_ends{};              ///< for an observer with an eye: trials at both limits of the open parameters
+  EndTrials at_ends{};              ///< trials at both limits of the open parameters of an observer with an eye
   TodCurve curve;                   ///< empty if no fit was possible
-  std::vector<PairedRatio> ratios;  ///< ratios to the result without a package; empty for that result itself
+  std::vector<PairedRatio> ratios;  ///< ratios to the result without a package; empty in the result without a package
   double frame_ms = 0;              ///< median processing time of its stages per frame
   std::size_t frames = 0, clipped_pixels = 0;
-  int samples_per_pixel = 1;           ///< samples per pixel and axis of the judged pictures
-  std::vector<JudgedContrast> judged;  ///< gain and noise by set-up and contrast; empty: no stages
-  cv::Mat1w picture;                   ///< picture of one frame; the same frame for all results
-  std::optional<Error> error;          ///< reason for an early end or a failed measurement; the trials so far are kept
+  int samples_per_pixel = 1;             ///< samples per pixel and axis of the judged pictures
+  std::vector<JudgedContrast> judged;    ///< gain and noise by set-up and contrast; empty: no stages
+  cv::Mat1w picture;                     ///< picture of one frame; the same frame for all results
+  std::optional<Error> error;            ///< reason for an early end or a failed measurement; earlier trials are kept
   std::vector<std::string> error_lines;  ///< standard error of its modules, the first hundred lines
 };
 /// Results of all packages.
@@ -64,15 +64,15 @@ struct Enhancement {
 struct EnhancementOptions {
   std::function<void(const std::string& name)> on_package{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
-  int dither = 1;  ///< n: the simulated sensor observes n x n places of a pixel in turn (dither_px())
+  int dither = 1;  ///< n: the simulated sensor observes n x n positions within a pixel in turn (dither_px())
 };
 /// Simulates the plan's sensor with every effect, once without and once with each package, with the same random
-/// numbers: the exposures are identical bit for bit. After a change of the target, as many exposures are discarded as
-/// the package with the longest memory stores. The place of the plate and the contrast are measured in the pictures of
-/// the camera itself. If a package fails, its result contains the error, and the other packages continue. For an
-/// observer with an eye, the observers at both limits of its open parameters judge the same patches, so that thresholds
-/// and ratios have a spread. If this is not possible, a warning states the reason. Errors: `invalid_input` for a plan
-/// whose schedule depends on the answers; those of the simulation without a package.
+/// numbers: the exposures are identical bit for bit. After a change of the target, exposures are discarded; their
+/// number is the memory of the package with the longest memory. The position of the plate and the contrast are measured
+/// in the pictures of the camera itself. If a package fails, its result contains the error, and the other packages
+/// continue. For an observer with an eye, the observers at both limits of its open parameters judge the same patches,
+/// so that thresholds and ratios have a spread. If this is not possible, a warning states the reason. Errors:
+/// `invalid_input` for a plan whose schedule depends on the answers; those of the simulation without a package.
 [[nodiscard]] Result<Enhancement> compare_packages(const LoadedPlan& loaded,
                                                    const std::vector<EnhancementPackage>& packages,
                                                    const EnhancementOptions& options, std::stop_token stop);
@@ -80,7 +80,7 @@ struct EnhancementOptions {
 /// Returns the plan of a session for another evaluation of its recorded frames. Errors: those of open_session().
 [[nodiscard]] Result<LoadedPlan> recorded_plan(const std::filesystem::path& session, const Opening& opening);
 /// Compares the packages with the recorded frames of a session whose plan is `loaded`. The answers without a package
-/// equal the answers of the session. After a change, at most as many frames can be discarded as the run discarded; a
+/// equal the answers of the session. After a change, the comparison can discard only frames that the run discarded. A
 /// warning names packages that store more frames. Errors: those of compare_packages() and open_recorded_bench().
 [[nodiscard]] Result<Enhancement> compare_packages_recorded(const std::filesystem::path& session,
                                                             const LoadedPlan& loaded,

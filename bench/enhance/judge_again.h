@@ -22,9 +22,9 @@ struct JudgeRequest {
 
 /// Runs the plan of the session on its recorded frames, simulates the twin, compares and judges. Writes a new session
 /// that names its origin. The same observer without a package gives the same trials and the same curve. With a package,
-/// the answers are right or wrong and are fitted with a Weibull function, because the psychometric functions of the
-/// sensor do not include the package. Manifest and signature of the session are verified first. Errors: those of
-/// open_recorded_run() and measure_on_bench(); `invalid_input` for an adaptive schedule, whose frames follow from the
+/// the answers are binary and are fitted with a Weibull function, because the psychometric functions of the sensor do
+/// not include the package. Manifest and signature of the session are verified first. Errors: those of
+/// open_recorded_run() and measure_on_bench(); `invalid_input` for an adaptive schedule, whose frames depend on the
 /// answers, for grey levels with a package, for a missing display that the observer requires, and for an invalid
 /// signature; `not_found` if the program that verifies the signature is missing.
 [[nodiscard]] Result<ExperimentOutcome> judge_again(const std::filesystem::path& session, const JudgeRequest& request,

@@ -51,11 +51,11 @@ struct EnhancementPackage {
 
 /// Reads name, description, and [[stage]] with kind and its numbers; kind "module" has command, version, parameters,
 /// limit_ms, memory_mib, restart_frames, network, settle_frames. Commands run in the current folder of the caller.
-/// Errors: `invalid_input` "FILE:LINE: ..." in one sentence.
+/// Errors: `invalid_input` "FILE:LINE: ...".
 [[nodiscard]] Result<EnhancementPackage> read_package(const std::filesystem::path& file);
 
-/// Fails with `invalid_input` and one sentence for a package with super-resolution. `what`: user of the package, which
-/// requires pictures with one sample per pixel of the camera.
+/// Fails with `invalid_input` for a package with super-resolution. `what`: user of the package, which requires pictures
+/// with one sample per pixel of the camera.
 [[nodiscard]] Result<void> refuse_finer_pictures(const EnhancementPackage& package, std::string_view what);
 
 /// Returns the largest distance, in samples, over which a picture influences a sample behind the stages; empty if the

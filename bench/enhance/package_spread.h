@@ -19,7 +19,7 @@ struct Enhancement;
 struct PackageResult;
 struct FitOptions;
 
-/// Trials of the same patches by the best and then the worst observer of the open parameters.
+/// Trials of the same patches, first by the best and then by the worst observer within the open parameters.
 struct EndTrials {
   std::array<std::vector<Trial>, 2> trials;  ///< empty: not computed
   std::optional<Error> failure;              ///< error of an observer; the trials are then incomplete
@@ -31,7 +31,7 @@ class OpenEnds {
  public:
   /// Creates no observers if `observer` has no eye.
   explicit OpenEnds(const TemplateObserverSpec& observer);
-  /// Lets both observers judge the patch of a trial and appends their answers to `into`. They use the same random
+  /// Lets both observers judge the patch of a trial and appends their answers to `into`. Both use the same random
   /// numbers as the observer itself. `options`: options of the run.
   void judge(const Trial& trial, const Patch& patch, const MeasurementOptions& options, EndTrials& into);
 

@@ -14,15 +14,15 @@ namespace todbench {
 /// Counts of the answers of two runs to the same triangles at one contrast, in the presentations that both runs
 /// contain.
 struct PairedAnswers {
-  std::size_t count = 0, differing = 0;  ///< differing: right in one run only
-  /// True if all answers and all scores of the observer are equal bit for bit in both runs: it judged equal pictures,
-  /// and the ratio is exact. False if the observer gives no scores.
+  std::size_t count = 0, differing = 0;  ///< differing: correct in one run only
+  /// True if all answers and all scores of the observer are equal bit for bit in both runs: the observer judged equal
+  /// pictures, and the ratio is exact. False if the observer computes no scores.
   bool identical = false;
 };
 [[nodiscard]] PairedAnswers paired_answers(std::span<const Trial> with, std::span<const Trial> without,
                                            double set_delta_t_k);
 
-/// If fewer answers differ, the upper limit of the jackknife interval is too low.
+/// Required number of differing answers. With fewer, the upper limit of the jackknife interval is too low.
 inline constexpr std::size_t enough_differing = 10;
 
 /// Returns the amount by which |ln ratio| of the thresholds may exceed its estimate (95 %), given the number of

@@ -23,10 +23,10 @@ struct MeasureTime {
 /// Changes of the target and frames of the camera, in the order in which measure() and measure_camera() request them.
 struct BenchTime {
   std::uint64_t presentations = 0;
-  /// Number of presentations that change each property; the first presentation changes all.
+  /// Number of presentations that change each property; the first presentation changes all properties.
   std::uint64_t plate_changes = 0, mounting_changes = 0, contrast_changes = 0, shift_changes = 0;
-  std::uint64_t set_ups = 0;  ///< shown by the presentations; an adaptive schedule may end before it has visited all
-  /// Changes of one presentation run in parallel: black body and stage settle at the same time, and an operator brings
+  std::uint64_t set_ups = 0;  ///< set-ups of the presentations; an adaptive schedule may end before it has visited all
+  /// Changes of one presentation run in parallel: black body and stage settle at the same time, and an operator hangs
   /// another plate in the right mounting. So each presentation takes as long as its slowest change.
   double changes_s = 0;  ///< including the changes of the physical measures
   /// Frames for registration, contrast, answers and physical measures, including frames discarded after a change.

@@ -18,13 +18,13 @@ struct ComparisonForecast {
   std::string sentence;                      ///< begins with "warning" if the power is below 80 %
 };
 
-/// Forecasts the comparison of camera and twin. If the plan makes pairs, the standard errors follow from the ratio by
-/// common phases, because this ratio then decides. Otherwise they follow from the predicted uncertainty of the
-/// simulated design. Both are scaled to the camera's own number of phases.
+/// Forecasts the comparison of camera and twin. If camera and twin are measured at common phases, the paired ratio
+/// decides, and the standard errors are those of this ratio. Otherwise the standard errors follow from the predicted
+/// uncertainty of the simulated design. In both cases they are scaled to the camera's own number of phases.
 [[nodiscard]] ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction);
 
-/// Forecasts the comparison of two curves at its contrasts. The standard errors follow from the intervals of the
-/// curves, which include clusters.
+/// Forecasts the comparison of two curves at the contrasts of `comparison`. The standard errors follow from the
+/// intervals of the curves, which include clusters.
 [[nodiscard]] ComparisonForecast comparison_forecast(const TodCurve& a, const TodCurve& b,
                                                      const Comparison& comparison);
 

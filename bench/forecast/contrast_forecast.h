@@ -20,7 +20,7 @@ namespace todbench {
 [[nodiscard]] std::vector<double> expected_contrast_effects(const std::vector<ContrastPrediction>& contrasts);
 
 /// Returns the half-width of ln S75 that the scatter of a measured contrast causes alone, as AdaptiveSchedule computes
-/// it after the set-up in which half of the runs end. `looks`: how often the contrast is measured in each set-up. A
+/// it after the set-up in which half of the runs end. `looks`: number of measurements of the contrast in each set-up. A
 /// measurement averages `contrast_frames`, or the frames of a presentation if presentations have contrasts of their
 /// own. The noise comes from the sensor's file: fixed pattern, and temporal noise averaged over these frames.
 [[nodiscard]] double contrast_half_width(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
@@ -31,16 +31,16 @@ namespace todbench {
 void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Plan& plan, const ExperimentInputs& inputs,
                            const std::vector<std::vector<int>>& looks);
 
-/// Returns the least number of frames of the measured contrast ([measurement] contrast_frames) with which every
-/// contrast of the plan is predicted to be `enough`: the plan's, or twice to 64 times as many. Empty if 64 times as
-/// many are not. Errors: those of predict_plan().
+/// Returns the least number of frames of the measured contrast ([measurement] contrast_frames) for which the prediction
+/// of every contrast passes the test `enough`. Candidates are the number of the plan and 2 to 64 times this number.
+/// Empty if no candidate passes. Errors: those of predict_plan().
 [[nodiscard]] Result<std::optional<int>> enough_contrast_frames(
     Plan plan, const ExperimentInputs& inputs, const std::function<bool(const ContrastPrediction&)>& enough);
 
 /// Returns the frames of the measured contrast with which presentations decide a limit for a camera of the predicted
-/// acuity: its scatter then makes at most half of the half-width that decides. `floor_ln`: half-width of the stated
-/// rows. Empty if presentations decide with the plan's number, if the stated rows alone prevent the decision, or if 64
-/// times as many frames are not enough. Errors: those of predict_plan().
+/// acuity: the scatter of the contrast then causes at most half of the half-width that decides. `floor_ln`: half-width
+/// of the stated rows. Empty if presentations decide with the plan's number, if the stated rows alone prevent the
+/// decision, or if 64 times this number of frames is not enough. Errors: those of predict_plan().
 [[nodiscard]] Result<std::optional<int>> deciding_contrast_frames(const Plan& plan, const ExperimentInputs& inputs,
                                                                   const ContrastPrediction& contrast,
                                                                   double least_acuity_per_mrad, double floor_ln);

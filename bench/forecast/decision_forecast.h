@@ -59,13 +59,13 @@ struct CameraChance {
 
 /// One number of frames or phases of the plan, one rate of its ramp, or one half-width of its adaptive schedule.
 struct DecisionDesign {
-  std::vector<int> frames{};             ///< per presentation: one number for all contrasts, or one for each
-  int phases = 0;                        ///< per set-up and contrast
+  std::vector<int> frames{};             ///< frames per presentation: one number for all contrasts, or one for each
+  int phases = 0;                        ///< phases per set-up and contrast
   int contrast_frames = 0;               ///< frames of the measured contrast
-  std::optional<double> ramp_k_per_s{};  ///< of a ramp, which has no phases
+  std::optional<double> ramp_k_per_s{};  ///< rate of a ramp, which has no phases
   /// Half-width at which an adaptive schedule ends, in percent.
   std::optional<double> asked_percent{};
-  double bench_s = 0;                   ///< of the whole plan (laboratory_time())
+  double bench_s = 0;                   ///< bench time of the whole plan (laboratory_time())
   double half_width_percent = 0;        ///< expected half-width of the trials at the contrast of the limit
   double deciding_percent = 0;          ///< expected half-width including the stated rows
   bool planned = false;                 ///< true for the plan itself
@@ -90,12 +90,13 @@ struct DecisionForecast {
   double floor_percent = 0;                ///< half-width of all stated rows; 0: no budget
   double smallest_half_width_percent = 0;  ///< smallest_half_width_ln()
   std::vector<FloorRow> rows{};            ///< largest first
-  /// Half-width that the scatter of the measured contrast makes in the plan; presentations do not reduce it.
+  /// Half-width that the scatter of the measured contrast causes in the plan. More presentations do not reduce it.
   double contrast_percent = 0;
-  /// With contrast_percent, deciding_contrast_frames(); empty if the number of the plan need not change.
+  /// Frames of the measured contrast from deciding_contrast_frames(); empty if the number of the plan need not change.
   std::optional<int> contrast_frames{};
   std::vector<DecisionDesign> designs{};   ///< by bench time
-  std::optional<double> enough_bench_s{};  ///< least time with the smallest half-width that matters
+  std::optional<double> enough_bench_s{};  ///< least bench time of a design whose half-width is at most
+                                           ///< smallest_half_width_percent
 };
 
 /// Returns the bench time in s. For a simulated scene, the change times of the plan are used, as if it ran on a bench.
@@ -114,9 +115,9 @@ struct DecisionForecast {
 /// Errors: those of curve_uncertainty().
 [[nodiscard]] Result<std::vector<double>> floors_ln(const Plan& plan, const PlanPrediction& prediction);
 
-/// Returns a text about the limits that the stated rows of the budget leave open: even without scatter of the trials, a
-/// decision on them has a probability below `probability`. States the distance of the predicted acuity from each limit.
-/// Empty if there is no such limit.
+/// Returns a text about the limits that cannot be decided because of the stated rows of the budget: even without
+/// scatter of the trials, a decision on them has a probability below `probability`. States the distance of the
+/// predicted acuity from each limit. Empty if there is no such limit.
 [[nodiscard]] std::string open_by_budget(const Plan& plan, const std::vector<ContrastPrediction>& contrasts,
                                          const CurveUncertainty* budget, double probability);
 

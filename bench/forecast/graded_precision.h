@@ -11,15 +11,15 @@ struct GradedDesignFigures {
   /// Share of the sensor in the variance of the noise that decides an answer; the rest is the observer's.
   double sensor_share = 0;
   double pattern_share = 0;  ///< share of the sensor's fixed pattern in the same variance, part of sensor_share
-  double noise = 0;          ///< noise that decides an answer at the threshold, over the contrast
-  double size_pitch = 4;     ///< at the threshold
-  int frames = 1;            ///< per presentation
+  double noise = 0;          ///< noise that decides an answer at the threshold, divided by the contrast
+  double size_pitch = 4;     ///< size of the triangle at the threshold, in pitches
+  int frames = 1;            ///< frames per presentation
   int draws = 32;            ///< draws of the observer's noise, per frame
   int set_ups = 8;           ///< plates times mountings
   /// Effective number of set-ups, from their shares of the information: (sum)^2 / sum of squares; 0: equal shares. It
   /// determines whether set-ups are the clusters of the interval (clustered_variance.h).
   double informative_set_ups = 0;
-  int presentations = 96;        ///< per contrast
+  int presentations = 96;        ///< presentations per contrast
   double noise_correlation = 0;  ///< lag-1 correlation of the sensor's temporal noise, 0 to 1
   double frames_between = 0;     ///< frames between two presentations
 };
@@ -31,18 +31,19 @@ struct GradedDesignFigures {
 ///   (f - g) / F + (1 - f) / (F D) + r + g n s,   f = (3/4)^2 (Phi2(z, z; share) - (2/3)^2) / (p (1 - p)),
 ///   p = 3/4 = 1/4 + 3/4 Phi(z)
 ///
-/// f is the share of the sensor's noise in an answer at the threshold. The answer is right by luck in a quarter of the
-/// cases and otherwise by a Gaussian decision variable; Phi2 is the probability that this variable makes two answers to
-/// the same frame right. g is the share of the fixed pattern, which frames do not average. The n phases of a triangle
-/// of size S average the pattern only if they move the triangle across its detectors: s = 1.5 exp(-(1.9 / S)^2), S in
-/// pitches. 1.5 applies to set-ups that place triangles on the same detectors (both numbers from 78 runs of
-/// `graded_coverage_study` with a pattern of 0.1 K). r is 0.048 over the number of phases, at most 0.15, if the
-/// mountings cancel the phases (five set-ups or more; 138 runs with 12 phases and 11 runs with 3 phases of
+/// f is the share of the sensor's noise in an answer at the threshold. The answer is correct by chance in a quarter of
+/// the cases; otherwise a Gaussian decision variable determines the answer. Phi2 is the probability that this variable
+/// makes two answers to the same frame correct. g is the share of the fixed pattern, which frames do not average. The n
+/// phases of a triangle of size S average the pattern only if they move the triangle across its detectors: s = 1.5
+/// exp(-(1.9 / S)^2), S in pitches. 1.5 applies to set-ups that place triangles on the same detectors (both numbers
+/// from 78 runs of `graded_coverage_study` with a pattern of 0.1 K). r is 0.048 over the number of phases, at most
+/// 0.15, if the mountings cancel the phases (five set-ups or more; 138 runs with 12 phases and 11 runs with 3 phases of
 /// `graded_coverage_study`). With fewer set-ups the phases do not cancel: 0.28 / (1 + (noise / 0.13)^2), because noise
-/// hides the place of a triangle between the detectors (48 runs of adaptive plans at 8 contrasts with the SC2000, 2 to
-/// 5 set-ups).
+/// hides the position of a triangle between the detectors (48 runs of adaptive plans at 8 contrasts with the SC2000, 2
+/// to 5 set-ups).
 ///
-/// For first-order noise of lag-1 correlation rho, the answers to frames k apart share
+/// For first-order noise of lag-1 correlation rho, the answers to two frames at a distance of k frames have in common
+/// the share
 ///   c(k) = (3/4)^2 (Phi2(z, z; pattern share + (sensor share - pattern share) rho^k) - (2/3)^2) / (p (1 - p)) - g.
 /// Then (f - g) / F becomes the variance of a mean of F of these answers, and the covariances of successive
 /// presentations of a set-up are added, times exp(-(1.9 / S)^2).
@@ -52,29 +53,29 @@ struct GradedDesignFigures {
 /// 1 + g (n s - 1), plus the covariances of successive presentations.
 [[nodiscard]] double pattern_inflation(const GradedDesignFigures& design);
 
-/// Returns the variance of the ln ratio of camera and twin by common phases, over the variance of as many binary
-/// answers. The phases are common and cancel. The remaining terms are the noise of the camera's frames with its fixed
-/// pattern, the observer's noise, and the noise of the twin's answers, each the mean of `twin_draws` own frames. The
-/// variance does not contain the scatter of the effective contrast.
+/// Returns the variance of the ln ratio of camera and twin by common phases, divided by the variance of the same number
+/// of binary answers. The phases are common and cancel. The remaining terms are the noise of the camera's frames with
+/// its fixed pattern, the observer's noise, and the noise of the twin's answers. Each answer of the twin is the mean
+/// over `twin_draws` frames of its own. The variance does not contain the scatter of the effective contrast.
 [[nodiscard]] double paired_variance_ratio(const GradedDesignFigures& design, int twin_draws);
 
 /// Choices for the number of frames per presentation.
 inline constexpr std::array frame_choices{1, 2, 4, 8};
 
 /// Returns the smallest of `frame_choices` whose variance times the time of a presentation is within 10 % of the
-/// minimum. `single_s`: time of a presentation of one frame; `frame_s`: of each further frame. The product is flat
-/// around its minimum, so the smaller number costs little.
+/// minimum. `single_s`: time of a presentation of one frame. `frame_s`: time of each further frame. The product is flat
+/// around its minimum, so a smaller number of frames increases the time only slightly.
 [[nodiscard]] int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s);
 
-/// Returns the half-width of a 95 % interval of ln S75 over its standard error: Student's t times
-/// graded_likely_excess(). This factor covers 95 % of runs, because a variance from few set-ups scatters as chi-square
-/// over its degrees of freedom. From five set-ups on the result includes 1.06, the root of the chance share of
-/// detectors common to set-ups (clustered_variance.h).
+/// Returns the half-width of a 95 % interval of ln S75 divided by the standard error: Student's t times
+/// graded_likely_excess(). The second factor covers 95 % of runs, because a variance from few set-ups scatters as
+/// chi-square over its degrees of freedom. From five set-ups on the result includes 1.06, the root of the chance share
+/// of detectors common to set-ups (clustered_variance.h).
 [[nodiscard]] double graded_interval_factor(const GradedDesignFigures& design);
 /// Returns the ratio of estimated to true standard error that 19 of 20 estimates with these degrees of freedom do not
 /// exceed.
 [[nodiscard]] double likely_excess_of_error(double degrees_of_freedom);
-/// Returns the factor of graded_interval_factor() for unlucky runs: likely_excess_of_error() with graded_freedom().
+/// Returns the second factor of graded_interval_factor(): likely_excess_of_error() with graded_freedom().
 [[nodiscard]] double graded_likely_excess(const GradedDesignFigures& design);
 /// Returns the degrees of freedom of the variance of graded answers.
 [[nodiscard]] double graded_freedom(const GradedDesignFigures& design);

@@ -46,7 +46,7 @@ struct LimitForecast {
 struct MeasureForecast {
   std::string measure;
   std::optional<double> at_least{}, at_most{};
-  double u = 0;  ///< in the unit of the measure
+  double u = 0;  ///< standard uncertainty in the unit of the measure
   FleetForecast as_before, half_u;
 };
 /// Returns a forecast for every limit on a measure whose fleet row states an uncertainty. Measures with limits on their

@@ -13,9 +13,9 @@ namespace todbench {
 /// Variant of the plan with other answers.
 struct PrecisionChoice {
   AnswerKind answers = AnswerKind::binary;
-  std::vector<int> frames{1};  ///< per presentation: one number for all contrasts, or one for each
+  std::vector<int> frames{1};  ///< frames per presentation: one number for all contrasts, or one for each
   std::vector<ContrastPrediction> contrasts{};
-  std::optional<double> half_width_percent{};  ///< half the 95 % interval of S75, the largest over the contrasts
+  std::optional<double> half_width_percent{};  ///< half of the 95 % interval of S75, the largest over the contrasts
   double bench_s = 0;                          ///< time on the bench alone; 0 without a camera
   double seconds = 0;    ///< time of the measurement with the camera, or of the simulation if the plan has no camera
   bool planned = false;  ///< true for the plan itself
@@ -28,10 +28,10 @@ struct PrecisionChoice {
 
 /// Returns the choices for the camera's curve, if there is one: binary answers, graded answers with 1, 2, 4 and 8
 /// frames, and the plan's own numbers (with_frames()) if they differ. Half-widths come from predict_plan(). The time of
-/// the plan's own choice is that of predict_times(): the one in `figures`, or a new one if `figures` has none. For
-/// graded answers a second number of frames is timed, and the times of the others follow. For a ramp, returns only the
-/// plan's own choice, because other numbers of frames would change its rate. Errors: those of predict_plan() and
-/// predict_times().
+/// the plan's own choice is computed by predict_times(), or read from `figures` if `figures` contains it. For graded
+/// answers a second number of frames is timed too, and the times of the other numbers are computed from both. For a
+/// ramp, returns only the plan's own choice, because other numbers of frames would change its rate. Errors: those of
+/// predict_plan() and predict_times().
 [[nodiscard]] Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const ExperimentInputs& inputs,
                                                                       std::stop_token stop, PlanFigures figures = {});
 

@@ -20,7 +20,7 @@ struct ContrastPrediction {
   /// % of runs do not exceed. For an adaptive schedule, the requested half-width, or the half-width that its cap
   /// allows. Empty: not identified.
   std::optional<double> uncertainty_percent;
-  double trials = 0;  ///< of the simulation
+  double trials = 0;  ///< number of trials of the simulation
   /// Expected standard error of ln S75, without the margin for unlucky runs of `uncertainty_percent`; 0: not
   /// identified.
   double se_ln_s75 = 0;
@@ -34,7 +34,7 @@ struct ContrastPrediction {
   /// not expected to stop before its cap.
   std::optional<double> stopped_at_percent{};
   /// Standard error of the ln ratio of camera and twin by common phases, with the same margin as `uncertainty_percent`;
-  /// empty: the plan makes no pairs.
+  /// empty: the plan contains no paired comparison.
   std::optional<double> paired_se_ln_ratio{};
 };
 
@@ -46,7 +46,7 @@ struct PlanPrediction {
   std::vector<std::string> warnings;  ///< one sentence each
 };
 
-/// Returns the plan with all numbers of frames per presentation. If the plan leaves a number open and uses graded
+/// Returns the plan with all numbers of frames per presentation. If the plan does not state a number and uses graded
 /// answers, the number becomes the smallest of 1, 2, 4 and 8 whose variance (graded_precision.h) times the time of a
 /// presentation (bench_time()) is within 10 % of the minimum. It becomes four if no time or no threshold is predicted.
 /// Binary answers use one frame.

@@ -28,9 +28,10 @@ struct ContrastWay {
 struct RampComparison {
   double lag_s = 0;
   double rate_k_per_s = 0, largest_rate_k_per_s = std::numeric_limits<double>::infinity();
-  ContrastWay ramp{};                       ///< at the rate of the plan
-  std::optional<ContrastWay> at_largest{};  ///< at the largest rate, if there is one
-  ContrastWay settled{}, within_band{};     ///< with the phases of the plan; the band is studied_band_percent
+  ContrastWay ramp{};                       ///< ramp at the rate of the plan
+  std::optional<ContrastWay> at_largest{};  ///< ramp at the largest rate, if there is one
+  ContrastWay settled{}, within_band{};     ///< settled contrasts, and contrasts within studied_band_percent, with the
+                                            ///< phases of the plan
 };
 
 /// Compares a ramp with settled contrasts; empty for other plans. Errors: predict_plan().

@@ -23,7 +23,7 @@ struct ChartDesign {
   double lambda = 0.2, ewma_limit = 2.7;
   double cusum_k = 0.5, cusum_h = 5;  ///< CUSUM: ARL 465 in control, 10.4 at a shift of one standard deviation
   int reference_values = 3;           ///< number of first values, whose mean is the reference
-  std::optional<double> reference{};  ///< known reference; replaces their mean
+  std::optional<double> reference{};  ///< known reference; replaces the mean of the first values
   std::optional<double> scatter{};    ///< known scatter; replaces the estimate
 };
 
@@ -34,7 +34,7 @@ struct ChartPoint {
   double ewma = 0, ewma_limit = 0;
   double cusum_up = 0, cusum_down = 0;
   bool in_reference = false;
-  bool signal = false;  ///< beyond a limit of either chart
+  bool signal = false;  ///< the value is beyond a limit of either chart
 };
 
 /// Charts of one measure.
@@ -46,9 +46,9 @@ struct ControlChart {
 };
 
 /// Returns the chart of values in the order of time. The reference is the weighted mean of the first values. Its
-/// standard error widens the limits of the EWMA; without an error they are the usual limits. The scatter is the square
-/// root of half the mean square of successive differences minus the mean u^2 (von Neumann 1941), at least 0. Empty if
-/// there is no value after the reference, or if a value has neither uncertainty nor scatter.
+/// standard error widens the limits of the EWMA; if this error is 0, these are the usual limits. The scatter is the
+/// square root of half the mean square of successive differences minus the mean u^2 (von Neumann 1941), at least 0.
+/// Empty if there is no value after the reference, or if a value has neither uncertainty nor scatter.
 [[nodiscard]] std::optional<ControlChart> control_chart(const std::vector<ChartValue>& values,
                                                         const ChartDesign& design);
 

@@ -24,8 +24,8 @@ struct HistoryEvent {
 /// Result of adding a session.
 enum class Adding {
   added,
-  known,         ///< same manifest at the same place, or a copy of a session that still exists
-  moved,         ///< same manifest at another place; the session no longer exists at the old place
+  known,         ///< same manifest in the same folder, or a copy of a session that still exists
+  moved,         ///< same manifest in another folder; the session no longer exists in the old folder
   judged_again,  ///< not added, because its frames come from another session
 };
 

@@ -15,7 +15,7 @@ namespace todbench {
 /// Value that precedes the last event or change of firmware, and therefore is not part of a chart.
 struct EarlierValue {
   std::string started_utc;
-  ChartValue value;      ///< on the scale of the chart
+  ChartValue value;      ///< value on the scale of the chart
   std::string ended_by;  ///< kind of the next event, or "firmware"
 };
 
@@ -23,7 +23,7 @@ struct EarlierValue {
 struct HistorySeries {
   HistoryUnit unit;
   std::string measure, condition, unit_text, scale;
-  std::vector<ChartValue> values;  ///< on the scale of the chart
+  std::vector<ChartValue> values;  ///< values on the scale of the chart
   std::vector<std::string> started_utc;
   std::vector<EarlierValue> earlier{};
 };

@@ -23,7 +23,7 @@ namespace todbench {
 struct AppliedRow {
   BudgetRow row;
   BudgetInput input = BudgetInput::acuity;
-  double standard_uncertainty = 0;  ///< in the unit of the row
+  double standard_uncertainty = 0;  ///< standard uncertainty in the unit of the row
   double contribution = 0;          ///< contribution to the uncertainty of ln acuity
   double share_percent = 0;         ///< share of the variance
   bool from_run = false;            ///< added by the run, not stated in the plan
@@ -56,7 +56,7 @@ struct PointUncertainty {
 
 /// Uncertainty of a curve.
 struct CurveUncertainty {
-  std::vector<PointUncertainty> points;   ///< in the order of the curve
+  std::vector<PointUncertainty> points;   ///< uncertainty of each point, in the order of the curve
   std::vector<std::string> not_stated{};  ///< rows of a complete budget that are missing
   /// Relative standard uncertainty of the temperature scale, and of quantities that are divided by it
   /// (relative_u_of_scale()).

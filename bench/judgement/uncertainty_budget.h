@@ -24,7 +24,7 @@ struct UncertaintyBudget {
 
 /// Contribution of a row.
 struct BudgetShare {
-  double standard_uncertainty = 0;  ///< in the unit of the row
+  double standard_uncertainty = 0;  ///< standard uncertainty in the unit of the row
   double contribution = 0;          ///< absolute sensitivity times standard_uncertainty, in the unit of the result
   double share_percent = 0;         ///< share of the variance
 };
@@ -46,8 +46,8 @@ inline constexpr int budget_draws = 1000000;
 inline constexpr int session_budget_draws = 200000;
 
 /// Combines the rows. `seed` seeds the draws. If `draws` is 0, `expanded` equals `expanded_gum`. Errors:
-/// `invalid_input`, one sentence that names the row (no rows, duplicate name, negative or non-finite value, degrees of
-/// freedom below 1, different units without a sensitivity, total uncertainty of 0).
+/// `invalid_input` that names the row (no rows, duplicate name, negative or non-finite value, degrees of freedom below
+/// 1, different units without a sensitivity, total uncertainty of 0).
 [[nodiscard]] Result<CombinedUncertainty> combined(const UncertaintyBudget& budget, std::uint64_t seed,
                                                    int draws = budget_draws);
 

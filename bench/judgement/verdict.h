@@ -57,7 +57,7 @@ inline constexpr DemandKind DemandKind::acuity{"acuity"}, DemandKind::identified
 /// Ratio of camera and twin that an equivalence demand uses.
 enum class RatioKind {
   unpaired,  ///< ratio of the two thresholds
-  paired,    ///< ratio from the phases that both observed (tod/comparison/paired_ratio.h)
+  paired,    ///< ratio from the phases that camera and twin both observed (tod/comparison/paired_ratio.h)
 };
 inline constexpr std::array all_ratio_kinds{RatioKind::unpaired, RatioKind::paired};
 /// Returns the name of the enumerator.
@@ -135,9 +135,9 @@ struct JudgementInput {
   bool bench_contradicts = false;  ///< the run ended because the frames contradict plan or target: no demand is decided
   JudgedWhen judged = JudgedWhen::at_end_of_run;
   const CurveUncertainty* uncertainty = nullptr;  ///< uncertainty of the curve; null: the plan has no budget
-  /// Transmittance of the bench, if camera and target both state the contrast in kelvin. Then, without a budget, a
-  /// limit on an acuity is judged with an interval that holds for both contrasts, set and observed, if they differ by
-  /// more than two standard errors. Empty: the contrasts are not compared.
+  /// Transmittance of the bench, if camera and target both state the contrast in kelvin. If the plan then has no
+  /// budget, and set and observed contrast differ by more than two standard errors, a limit on an acuity is judged with
+  /// an interval that is valid for both contrasts. Empty: the contrasts are not compared.
   std::optional<double> air_transmittance{};
   /// Measures of the camera, or of the simulated sensor alone; empty: none measured.
   std::optional<std::vector<MeasuredQuantity>> measures{};

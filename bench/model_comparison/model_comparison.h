@@ -20,8 +20,8 @@ enum class ModelKind { sensor, observer, package };
 struct ComparedModel {
   ModelKind kind = ModelKind::sensor;
   std::string name, reference, sha256;
-  SensorSpec sensor{};           ///< with its modules
-  DescribedObserver observer{};  ///< with its module
+  SensorSpec sensor{};           ///< sensor with its modules
+  DescribedObserver observer{};  ///< observer with its module
   EnhancementPackage package{};  ///< package; without stages if there is no package
   std::vector<std::string> provenance{};
 };

@@ -52,8 +52,9 @@ struct DynamicListener {
   std::function<Result<void>(const MovingMeasurement&)> on_measured{};
 };
 
-/// Measures with the camera of the plan, or with its simulated sensor if it has none. Errors: those of open_bench() and
-/// measure_moving(), including early ends; `invalid_input` for plans with modules or contrasts in grey levels.
+/// Measures with the camera of the plan, or with its simulated sensor if the plan has no camera. Errors: those of
+/// open_bench() and measure_moving(), including early ends; `invalid_input` for plans with modules or contrasts in grey
+/// levels.
 [[nodiscard]] Result<DynamicMeasurement> measure_dynamic(const LoadedPlan& loaded, const DynamicListener& listener,
                                                          std::stop_token stop);
 

@@ -18,13 +18,14 @@ struct DynamicSession {
   ExperimentOutcome outcome;
 };
 
-/// Fails with `invalid_input` and one sentence if the plan requests something that does not apply to a moving target.
+/// Fails with `invalid_input` if the plan requests something that does not apply to a moving target.
 [[nodiscard]] Result<void> check_dynamic_plan(const Plan& plan, const SensorSpec& sensor);
 
 /// Runs measure_dynamic() and writes its session folder. trials.csv, fits, verdict and report are for the plate at rest
 /// and the observer `single-frame`. dynamic.json contains all results. moving-trials.csv contains the answers of all
-/// observers at all speeds. Errors: those of measure_dynamic() and check_dynamic_plan(). An error before the devices
-/// are open leaves no folder; a later one leaves a folder that is marked interrupted and contains the trials so far.
+/// observers at all speeds. Errors: those of measure_dynamic() and check_dynamic_plan(). After an error before the
+/// devices are open there is no folder. After a later error the folder is marked interrupted and contains the earlier
+/// trials.
 [[nodiscard]] Result<DynamicSession> measure_dynamic_session(
     const LoadedPlan& loaded, const ExperimentOptions& options, const ExperimentListener& listener,
     const std::function<void(const MovingPassRecord&)>& on_pass, std::stop_token stop);

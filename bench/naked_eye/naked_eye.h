@@ -24,13 +24,12 @@ struct NakedEyeTask {
   bool operator==(const NakedEyeTask&) const = default;
 };
 
-/// Checks a task. Errors: `invalid_input` with one sentence (no eye, no display, a contrast or noise that the display
-/// cannot show).
+/// Checks a task. Errors: `invalid_input` (no eye, no display, a contrast or noise that the display cannot show).
 [[nodiscard]] Result<void> validate(const NakedEyeTask& task);
 
 /// Returns a display whose luminance is proportional to the level and on which 1 K is a luminance contrast of 1. It
-/// describes what the person sees, because pictures are drawn with the measured luminances of the levels. Precondition:
-/// validate() of the display succeeds.
+/// describes the picture that the person sees, because pictures are drawn with the measured luminances of the levels.
+/// Precondition: validate() of the display succeeds.
 [[nodiscard]] ViewedDisplay linear_display(const ViewedDisplay& display);
 
 /// Returns the model that looks at this display. Precondition: validate() of the task succeeds.

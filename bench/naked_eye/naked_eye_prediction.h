@@ -13,7 +13,7 @@ namespace todbench {
 
 class JsonFields;
 
-/// Predicted share of right answers at one size.
+/// Predicted share of correct answers at one size.
 struct NakedEyeShare {
   double size_samples = 0, size_mrad = 0;
   double share = 0;                      ///< share by the model
@@ -26,15 +26,15 @@ struct NakedEyeContrast {
   double s75_mrad = 0;
   double s75_se_mrad = 0;  ///< standard error of the calculation, from its finite number of pictures
   /// Lowest and highest S75 over the open parameters (hvs/observer/open_parameters.h); not a confidence interval. A
-  /// side is empty if the model has no threshold there.
+  /// limit is empty if the model has no threshold at that limit of the parameters.
   std::optional<double> spread_low_mrad, spread_high_mrad;
-  std::vector<NakedEyeShare> sizes;  ///< in increasing order
+  std::vector<NakedEyeShare> sizes;  ///< sizes in increasing order
 };
 
 /// Prediction at all contrasts.
 struct NakedEyePrediction {
   double arcmin_per_sample = 0, adaptation_luminance_cd_m2 = 0;
-  std::vector<NakedEyeContrast> contrasts;  ///< in the order of the task
+  std::vector<NakedEyeContrast> contrasts;  ///< contrasts in the order of the task
   /// Returns the sizes of every contrast, in displayed samples.
   [[nodiscard]] std::vector<std::vector<double>> sizes_samples() const;
 };

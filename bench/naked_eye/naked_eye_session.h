@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Folder of a naked-eye session: the prediction before the first answer, the answers with their pictures, and the
-// comparison after the last one.
+// comparison after the last answer.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ namespace todbench {
 inline constexpr std::string_view naked_eye_name = "naked_eye.json";
 inline constexpr std::string_view naked_eye_comparison_name = "naked_eye_comparison.json";
 
-/// Session with its pictures and the answers so far. Used by one thread at a time.
+/// Session with its pictures and answers. Used by one thread at a time.
 class NakedEyeSession {
  public:
   /// Computes the prediction, and writes task and prediction into a new folder. Errors: predict_naked_eye();
@@ -39,8 +39,8 @@ class NakedEyeSession {
   [[nodiscard]] const NakedEyePicture& picture() const { return picture_; }
   /// Records the answer to picture(). `response_s`: time from display to answer.
   void answer(Apex answer, double response_s, std::optional<int> limit_ms);
-  /// Writes the answers so far, the facts about the person, and the comparison. Call it once. Errors: `invalid_input`
-  /// (no answers), `io`.
+  /// Writes the answers, the facts about the person, and the comparison. Call it once. Errors: `invalid_input` (no
+  /// answers), `io`.
   [[nodiscard]] Result<void> finish(const PersonFacts& person);
   /// Returns the record. Precondition: finish() was called.
   [[nodiscard]] const HumanRecord& record() const { return *record_; }
@@ -48,7 +48,7 @@ class NakedEyeSession {
   [[nodiscard]] const Json& comparison() const { return comparison_; }
 
  private:
-  NakedEyeSession() noexcept(false) = default;  // that of Json may throw
+  NakedEyeSession() noexcept(false) = default;  // the constructor of Json may throw
   void draw_next();
 
   NakedEyeTask task_;

@@ -51,7 +51,7 @@ struct PeopleFitOptions {
   TemplateObserverSpec from;
   std::string from_sha256;                      ///< SHA-256 of the text of `from`
   std::string name;                             ///< name of the fitted observer
-  std::array<bool, observer_key_count> free{};  ///< parameters to fit; the others stay as in `from`
+  std::array<bool, observer_key_count> free{};  ///< parameters to fit; the other parameters keep the values of `from`
   PersonsAre persons = PersonsAre::codes;
   int replicates = 299;  ///< replicates of the bootstrap of the goodness of fit, at least 19
   int draws = 384;       ///< noise vectors per answer probability, an even number
@@ -105,7 +105,7 @@ struct PeopleFit {
 [[nodiscard]] ObserverValues start_values(const TemplateObserverSpec& from);
 
 /// Returns the difference between a fitted value and the value of `from`, in units of the spread of hvs-2. The spread
-/// is half of the range over which public data leave the parameter open (gain +-4 dB, contrast noise 0 to 0.07,
+/// is half of the range of the parameter that is consistent with public data (gain +-4 dB, contrast noise 0 to 0.07,
 /// sensor-noise factor 1.1 to 3.2); for decibels and factors it is taken in logarithms. Empty for other parameters, and
 /// for an observer without an eye.
 [[nodiscard]] std::optional<double> spreads_from_default(const PeopleFit& fit, std::size_t key);

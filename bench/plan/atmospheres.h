@@ -18,7 +18,7 @@ struct AtmosphereRequest {
   SpectralBand band{};                ///< band of the camera
   std::string haze = "rural-23km";    ///< one of haze_names(); shipped table only
   double weight_temperature_k = 300;  ///< temperature of the weight dL/dT, for air given as a spectrum
-  double extinction_per_km = 0;       ///< for "beer-lambert" only
+  double extinction_per_km = 0;       ///< extinction coefficient for "beer-lambert"; otherwise not used
 };
 
 /// Air path of a range prediction, with its origin.
@@ -38,9 +38,9 @@ struct Atmosphere {
 
 /// Loads an air path by name or from a file (a reference with a slash or a dot). A CSV file has a header with range_km
 /// or range_m, and transmittance or tau; or wavelength_um and extinction_per_km. Any other file extension is read as
-/// tape7 of MODTRAN. The shipped table supplies its band that is nearest to the camera's band, if both ends agree
-/// within 0.6 um. Errors: `invalid_input`, one sentence with the file and, if known, the line; also if the request
-/// states an extinction for air that has its own.
+/// tape7 of MODTRAN. The shipped table supplies its band that is nearest to the camera's band, if both limits of the
+/// bands agree within 0.6 um. Errors: `invalid_input` with the file and, if known, the line; also if the request states
+/// an extinction for air that has its own.
 [[nodiscard]] Result<Atmosphere> load_atmosphere(std::string_view reference, const AtmosphereRequest& request);
 
 /// Parses the text of a file; the name of the file selects the format. Errors: as load_atmosphere().

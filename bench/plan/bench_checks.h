@@ -38,7 +38,7 @@ namespace todbench {
 [[nodiscard]] ValueMistakes check_distance(const Plan& plan, std::size_t row);
 /// Requires a focal length if another key of the collimator is stated, and no collimator in front of a monitor.
 [[nodiscard]] ValueMistakes check_focal_length(const Plan& plan, std::size_t row);
-/// Requires as many wavelengths as transmissions, in rising order.
+/// Requires equal numbers of wavelengths and transmissions, and wavelengths in rising order.
 [[nodiscard]] ValueMistakes check_collimator_table(const Plan& plan, std::size_t row);
 /// Requires "YYYY-MM-DD", or an empty text.
 [[nodiscard]] ValueMistakes check_due_date(const Plan& plan, std::size_t row);

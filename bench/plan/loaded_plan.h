@@ -25,9 +25,9 @@ namespace todbench {
 
 /// Descriptions that a plan names, as read from their files.
 struct PlanParts {
-  std::vector<TargetPlate> plates;  ///< in the order of the plan, names unique
+  std::vector<TargetPlate> plates;  ///< plates in the order of the plan, with unique names
   TemplateObserverSpec observer;
-  SensorSpec sensor;                          ///< with the microscan of its file
+  SensorSpec sensor;                          ///< sensor with the microscan of its file
   std::optional<TargetPlate> mtf_plate{};     ///< present if [measures] requests an MTF
   std::optional<TargetPlate> ctf_plate{};     ///< present if [measures] requests a CTF
   std::optional<TargetPlate> source_plate{};  ///< present if [measures] requests the size-of-source effect
@@ -63,7 +63,7 @@ class LoadedPlan {
   [[nodiscard]] static Result<LoadedPlan> load(Plan plan, const ResourceFinder& find = find_resource);
   /// Combines a plan with parts already read, which must be the parts that the plan names. Errors: validate().
   [[nodiscard]] static Result<LoadedPlan> of(Plan plan, PlanParts parts);
-  /// Loads another plan and reads only the parts that this one does not have.
+  /// Loads another plan and reads only the parts that this plan does not have.
   [[nodiscard]] Result<LoadedPlan> with(Plan plan, const ResourceFinder& find = find_resource) const;
 
   [[nodiscard]] const Plan& plan() const { return plan_; }

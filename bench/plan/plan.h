@@ -34,7 +34,7 @@ struct WarmUpPlan {
   double time_s = 0;           ///< frames are taken for this time before the run
   double drift_k_per_min = 0;  ///< the drift of the frame mean must be below this; 0: not checked
   double window_s = 60;        ///< duration of the frames from which the drift is computed
-  double timeout_s = 3600;     ///< the run ends if the drift is not below the bound by then
+  double timeout_s = 3600;     ///< the run ends if the drift is not below its limit after this time
   /// Returns whether the run waits.
   [[nodiscard]] bool stated() const { return time_s > 0 || drift_k_per_min > 0; }
   bool operator==(const WarmUpPlan&) const = default;
@@ -61,7 +61,7 @@ enum class TargetKind {
   scpi,    ///< black body and plate stage on the network
   prompt,  ///< the operator changes the target on request
   scene,   ///< the simulated scene of a simulated or emulated camera
-  display  ///< a monitor that the bench draws on
+  display  ///< a monitor on which the bench draws
 };
 inline constexpr std::array all_target_kinds{TargetKind::scpi, TargetKind::prompt, TargetKind::scene,
                                              TargetKind::display};
@@ -99,8 +99,8 @@ struct TargetPlan {
   double display_pixel_mm = 0, display_span_k = 0, display_gamma = 1, display_settle_s = 0.2;
   /// Luminance at equally spaced levels, black to white; replaces display_gamma.
   std::vector<double> display_luminance{0, 1};
-  /// Distance from the entrance pupil to the plate, or the focal length of the collimator. A file states either this or
-  /// a collimator.
+  /// Distance from the entrance pupil to the plate, or the focal length of the collimator. A file states either this
+  /// distance or a collimator.
   double distance_m = 2;
   CollimatorPlan collimator{};
   std::vector<std::string> plates{"tcat-a", "tcat-b"};  ///< names or files
@@ -110,11 +110,11 @@ struct TargetPlan {
   std::vector<int> mountings_per_plate{0};
   std::vector<double> delta_t_k{16.9, 1.93, 0.23};  ///< set contrasts, never 0; the sign is the polarity
   int phases = 16;                                  ///< sub-pixel shifts per plate, mounting and contrast
-  /// Largest error of an observed shift of the plate; a larger one ends the run. 0: shifts are not checked.
+  /// Largest error of an observed shift of the plate; a larger error ends the run. 0: shifts are not checked.
   double max_shift_error_px = 0.25;
   /// Air between plate and camera; humidity 0: not stated, no correction.
   double air_temperature_c = 20, air_humidity_percent = 0;
-  double settle_timeout_s = 600;  ///< the run ends if the target is not stable by then
+  double settle_timeout_s = 600;  ///< the run ends if the target is not stable after this time
   /// Largest deviation of the effective contrast from the set contrast; empty: derived from the budget
   /// (allowed_contrast_deviation()).
   std::optional<double> max_contrast_deviation_percent{};
@@ -150,7 +150,7 @@ struct SimulationPlan {
 /// Order of presentations and rule by which the run ends.
 enum class ScheduleKind {
   constant,  ///< every combination of [target] at every phase
-  adaptive,  ///< chosen from the answers so far until intervals are narrow enough (tod/schedule/adaptive_schedule.h)
+  adaptive,  ///< chosen from earlier answers until intervals are narrow enough (tod/schedule/adaptive_schedule.h)
   ramp,      ///< the contrast falls and rises in every set-up while the plate is shifted (tod/schedule/ramp_schedule.h)
 };
 inline constexpr std::array all_schedule_kinds{ScheduleKind::constant, ScheduleKind::adaptive, ScheduleKind::ramp};
@@ -218,7 +218,7 @@ struct MeasureLimit {
   bool operator==(const MeasureLimit&) const = default;
 };
 
-/// Name of the zone that covers the whole frame, whatever its stated area.
+/// Name of the zone that covers the whole frame, regardless of its stated area.
 inline constexpr std::string_view whole_frame_zone = "whole";
 
 /// Row of [[limits.zone]]: largest number of defective pixels in a part of the frame.
@@ -239,7 +239,7 @@ inline constexpr int least_fleet_units = 10;
 struct FleetRow {
   std::string measure{fleet_acuity};
   std::optional<double> delta_t_k{};  ///< acuity only
-  double mean = 0;                    ///< in the unit of the measure; geometric mean for an acuity
+  double mean = 0;                    ///< mean in the unit of the measure; geometric mean for an acuity
   double sd = 0;                      ///< standard deviation of true values in that unit; of ln acuity for an acuity
   double u = 0;                       ///< standard uncertainty of one value on the scale of sd; 0: negligible
   int units = 0;
@@ -373,7 +373,7 @@ struct MeasuresPlan {
   std::string source_size_plate = "apertures";
   /// Contrast of source_size_plate.
   double source_size_delta_t_k = CameraMeasuresOptions{}.source_delta_t_k;
-  /// Frames averaged with the contrast; as many are averaged before and after it, without contrast.
+  /// Frames averaged at the contrast. The same number is averaged without contrast before and after.
   int source_size_frames = CameraMeasuresOptions{}.source_frames;
   /// Side of the square source whose loss is reported and limited.
   double source_size_px = CameraMeasuresOptions{}.source_size_px;
@@ -444,9 +444,10 @@ inline constexpr std::array measure_keys{MeasureKey{"noise", &MeasuresPlan::nois
 /// Section [motion]: passes of a plate on a moving stage, for `todbench dynamic PLAN`.
 struct MotionPlan {
   std::vector<double> speeds_mrad_s{10, 30};  ///< 0 is always included
-  int passes = 8;                             ///< per plate, mounting, contrast and speed; right and left in turn
+  int passes = 8;                             ///< passes per plate, mounting, contrast and speed, alternately to the
+                                              ///< right and to the left
   int frames = 8;
-  int lead_frames = 5;  ///< frames of motion before the first one used
+  int lead_frames = 5;  ///< frames of motion before the first frame that is used
   PlaceSource places = PlaceSource::triangles;
   bool operator==(const MotionPlan&) const = default;
 };
@@ -457,9 +458,9 @@ struct ReportPlan {
   bool operator==(const ReportPlan&) const = default;
 };
 
-/// Part of an instrument on the bench.
+/// Role of an instrument on the bench.
 enum class InstrumentRole {
-  by_name,     ///< not stated: the name of the row contains "black body" or "plate stage", or it is another instrument
+  by_name,     ///< not stated; determined by "black body" or "plate stage" in the name of the row, otherwise `other`
   black_body,  ///< its calibration enters the uncertainty budget
   plate_stage,
   other,  ///< the report lists it

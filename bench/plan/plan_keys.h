@@ -18,7 +18,7 @@ namespace todbench {
 
 /// Line of the form in the window; without a label the key is not shown.
 struct FormLine {
-  std::string_view label{};        ///< without unit
+  std::string_view label{};        ///< label without unit
   std::string_view object_name{};  ///< name of the widget
   /// Repeated section only: path of the list of numbers whose elements are the values of the first key. The other keys
   /// become columns next to that list. If empty, the rows form a table of their own with names and numbers.
@@ -36,13 +36,13 @@ struct KeyOption {
   OptionOf of = OptionOf::simulations;
 };
 
-/// Access to the member that holds the value. `row` is the row of a repeated section, otherwise 0.
+/// Access to the member that contains the value. `row` is the row of a repeated section, otherwise 0.
 struct KeyPlace {
   std::function<KeyValue(const Plan&, std::size_t row)> get;
   std::function<void(Plan&, std::size_t row, const KeyValue&)> set;
 };
 
-/// Value that an absent key takes from elsewhere in the plan instead of its default.
+/// Value of an absent key that comes from another part of the plan instead of the default.
 struct KeyFallback {
   std::string_view words{};  ///< text for documents: "value of the sensor"
   std::function<KeyValue(const Plan&, const PlanParts&)> value{};
@@ -51,7 +51,7 @@ struct KeyFallback {
 /// Condition under which a file must contain a key.
 enum class Required {
   never,
-  with_section,  ///< if the file has the section
+  with_section,  ///< required if the file has the section
   always,
 };
 
@@ -66,7 +66,7 @@ struct KeyReplaced {
 struct PlanKey {
   std::string_view name;
   KeyType type;
-  std::string_view unit{};      ///< "s", "K"; empty: none
+  std::string_view unit{};      ///< unit, "s" or "K"; empty: no unit
   std::string_view sentence{};  ///< description for documents, tooltips and options
   KeyPlace place{};
   Required required = Required::never;
@@ -91,7 +91,7 @@ struct SectionRows {
 
 /// One section of a plan with its keys.
 struct PlanSection {
-  std::string_view name;  ///< as in the file, "limits.acuity"; empty: keys before the first section
+  std::string_view name;  ///< name as in the file, "limits.acuity"; empty: keys before the first section
   std::string_view sentence;
   std::vector<PlanKey> keys;
   SectionRows rows{};                           ///< empty functions: not repeated

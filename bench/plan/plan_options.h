@@ -23,7 +23,7 @@ enum class Side {
 [[nodiscard]] std::string_view to_string(Side side);
 
 /// Returns the options with the seed of the plan. `ifov_mrad`: of the camera, or of the sensor for the simulated side.
-/// The answers are binary in every case; chosen_answers() selects others.
+/// The answers are binary in every case; chosen_answers() selects other answers.
 [[nodiscard]] MeasurementOptions measurement_options(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                      double ifov_mrad);
 /// Returns the options for the camera of the plan, with its contrast unit.
@@ -53,20 +53,20 @@ struct ChosenEstimator {
   FitEstimator estimator = FitEstimator::weibull;
   EstimatorReason reason = EstimatorReason::no_twin;
 };
-/// Chooses the estimator that the plan names. If it names none, chooses the function of the simulated twin `sensor`, or
-/// a Weibull function if modules follow the sensor. No other code chooses the estimator.
+/// Chooses the estimator that the plan names. If the plan names no estimator, chooses the function of the simulated
+/// twin `sensor`, or a Weibull function if modules follow the sensor. No other code chooses the estimator.
 [[nodiscard]] ChosenEstimator chosen_estimator(const Plan& plan, const SensorSpec& sensor);
-/// Frames that a graded answer averages if the plan leaves the number open.
+/// Frames that a graded answer averages if the plan does not state the number.
 inline constexpr int frames_of_graded_answers = 4;
 /// Smallest number of presentations per contrast for graded answers. The scatter with fewer has not been studied.
 inline constexpr int least_graded_presentations = 8;
-/// Returns the frames per presentation that the plan states for a contrast; 0: left open, or no such contrast.
+/// Returns the frames per presentation that the plan states for a contrast; 0: not stated, or no such contrast.
 [[nodiscard]] int frames_at(const Plan& plan, double delta_t_k);
-/// Chooses the kind of answers that the plan names. If it names none, chooses graded answers if their intervals are
-/// validated: function of the twin without a lapse rate, contrasts in kelvin, and a ramp or at least eight
-/// presentations at each contrast. Otherwise chooses binary answers. No other code chooses the kind. The number of
-/// frames is for `delta_t_k` (empty: first contrast of the plan); it is four for graded answers if the plan leaves it
-/// open.
+/// Chooses the kind of answers that the plan names. If the plan names no kind, chooses graded answers if their
+/// intervals are validated: function of the twin without a lapse rate, contrasts in kelvin, and a ramp or at least
+/// eight presentations at each contrast. Otherwise chooses binary answers. No other code chooses the kind. The number
+/// of frames is for `delta_t_k` (empty: first contrast of the plan); it is four for graded answers if the plan does not
+/// state it.
 [[nodiscard]] AnswersTaken chosen_answers(const Plan& plan, const SensorSpec& sensor,
                                           std::optional<double> delta_t_k = std::nullopt);
 /// Returns the options with the equivalence margin of the limits; 10 % if the plan has none.

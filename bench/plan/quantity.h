@@ -23,11 +23,11 @@ enum class LimitSide {
 enum class StatedUncertainty {
   none,          ///< common errors cancel, for example in a ratio of contrasts in one picture
   camera_scale,  ///< uncertainty of a temperature difference on the camera's scale
-  scale,         ///< uncertainty of the temperature scale, for temperatures and quantities divided by one
+  scale,         ///< uncertainty of the temperature scale, for temperatures and quantities divided by a temperature
   distance,      ///< uncertainty of an angle per pixel
 };
 
-/// Demand that a limit on a quantity makes.
+/// Demand that corresponds to a limit on a quantity.
 struct QuantityLimit {
   std::string_view demand;  ///< name in verdict.json; empty: the quantity cannot have this limit
   std::string_view words;   ///< text in front of the number of the limit
@@ -36,9 +36,9 @@ struct QuantityLimit {
 
 /// Quantity of measures.json.
 struct Quantity {
-  std::string_view name;        ///< as in measures.json, without a place
+  std::string_view name;        ///< as in measures.json, without a position
   std::string_view unit;        ///< "1" for ratios and numbers of objects
-  std::string_view title;       ///< in reports
+  std::string_view title;       ///< title in reports
   std::string_view definition;  ///< one sentence, with the source of a published method
   /// Keys of [measures] that the quantity requires; empty: none.
   std::string_view measure{}, second_measure{};
@@ -51,7 +51,7 @@ struct Quantity {
 
 /// Returns all quantities. Quantities with limits are in the order of their demands.
 [[nodiscard]] std::span<const Quantity> quantities();
-/// Returns the quantity with this name; a place in brackets, "mtf_x (corner)", is ignored. Null if unknown.
+/// Returns the quantity with this name; a position in brackets, "mtf_x (corner)", is ignored. Null if unknown.
 [[nodiscard]] const Quantity* find_quantity(std::string_view name);
 /// Returns the quantity if it can have a limit; null otherwise.
 [[nodiscard]] const Quantity* find_limited_quantity(std::string_view name);

@@ -28,7 +28,7 @@ struct SetReaders {
 /// Targets in front of a uniform background; all have the same number of views.
 struct TargetSet {
   std::string name, description;
-  std::vector<IdentificationTarget> targets;  ///< at least two
+  std::vector<IdentificationTarget> targets;  ///< targets of the set, at least two
   std::vector<double> azimuths_deg;           ///< sides from which models are seen; empty: the views are pictures
   std::vector<std::string> notes;             ///< text for people about backgrounds of pictures that are not uniform
 };
@@ -39,22 +39,23 @@ struct TargetSet {
 
 /// Region of a picture and its target, as a set describes them.
 struct PictureCut {
-  cv::Rect region{};  ///< in pixels; empty: the whole picture
+  cv::Rect region{};  ///< region in pixels; empty: the whole picture
   std::optional<double> above_k{}, below_k{};
   cv::Mat1b mask{};  ///< mask of the whole picture, in place of thresholds
   std::optional<double> background_k{};
 };
 /// A target of a picture in front of its background.
 struct CutTarget {
-  ScenePicture picture;  ///< without a scale; other elements have the background's temperature
+  ScenePicture picture;  ///< picture without a scale; elements outside the target have the temperature of the
+                         ///< background
   cv::Size target_px;    ///< extent of the target
   double background_k = 0;
   /// Standard deviation of the pixels beside the target; empty if there are too few.
   std::optional<double> background_sd_k{};
 };
-/// Cuts the target. The background is `background_k` of the cut. If that is empty, it is the mean of the pixels at 3 to
-/// 5 pixels from the target. Nearer pixels contain the blur of the camera that took the picture. Errors:
-/// `invalid_input` in one sentence.
+/// Cuts the target. The background is `background_k` of the cut. If `background_k` is empty, the background is the mean
+/// of the pixels at a distance of 3 to 5 pixels from the target. Nearer pixels contain the blur of the camera that took
+/// the picture. Errors: `invalid_input`.
 [[nodiscard]] Result<CutTarget> cut_target(const cv::Mat1d& kelvin, const PictureCut& cut);
 
 /// Returns the smallest and largest element of the pictures of a set in metres; empty for models.

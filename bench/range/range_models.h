@@ -78,7 +78,7 @@ struct RangeSources {
                                                            const RangeSources& sources, const RangeQuestion& question);
 
 /// Adds the uncertainty of M75 to an interval of the TOD range, in quadrature in ln R. The contribution is the change
-/// of R75 if M75 is multiplied by exp(+-1.96 u). A limit is open if R75 leaves the curve on that side.
+/// of R75 if M75 is multiplied by exp(+-1.96 u). A limit is open if R75 is outside the curve on that side.
 [[nodiscard]] Interval joined_with_m75(std::span<const TodThreshold> thresholds, const RangeTask& task, double r75_m,
                                        const Interval& of_curve, double m75_u_percent);
 /// Returns a phrase about the criterion M75 or V50 of a model: its observer, its targets and its source.

@@ -21,8 +21,8 @@ class TurbulentSources {
   /// Prepares the sources. `still`: sources without turbulence, with a sensor. Thresholds of the TOD curve change by
   /// the same factor as the thresholds of the simulated observer (survey_scene()). This factor is computed at several
   /// paths up to `longest_m` and interpolated linearly in ln S75. Without an observer the thresholds do not change.
-  /// Formulas are evaluated for each path. Curves that were given are divided by the transfer function of the
-  /// turbulence. Errors: `invalid_input` (Cn2 or path not above 0, or no sensor).
+  /// Formulas are evaluated for each path. Given curves are divided by the transfer function of the turbulence. Errors:
+  /// `invalid_input` (Cn2 or path not above 0, or no sensor).
   [[nodiscard]] static Result<TurbulentSources> of(RangeSources still,
                                                    const std::optional<TemplateObserverSpec>& observer, double cn2,
                                                    double longest_m);

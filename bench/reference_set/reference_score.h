@@ -17,7 +17,7 @@ namespace todbench {
 struct ReferenceResult {
   std::string name;
   double s75_mrad = 0;
-  std::optional<Interval> ci95_mrad;  ///< with both limits
+  std::optional<Interval> ci95_mrad;  ///< 95 % interval with both limits
 };
 /// Parses a CSV text with the columns case, s75_mrad and optionally the pair s75_ci95_low_mrad, s75_ci95_high_mrad, in
 /// any order. Requires one row for each of `truths`. Errors: `invalid_input` "NAME:LINE: ..." (column unknown, missing
@@ -35,7 +35,7 @@ struct CaseScore {
 };
 /// Score of all cases.
 struct ReferenceScore {
-  std::vector<CaseScore> cases;       ///< in the order of the truths
+  std::vector<CaseScore> cases;       ///< scores in the order of the truths
   double mean_deviation_percent = 0;  ///< mean of the deviations in the logarithm: a common bias
   double rms_deviation_percent = 0;
   bool passed = false;  ///< every case is within the tolerance

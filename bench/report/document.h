@@ -96,7 +96,7 @@ struct TablePairs {
 
 /// Box with a verdict.
 struct VerdictBox {
-  std::string word;  ///< with its sign: "✓ PASS"
+  std::string word;  ///< word with its sign: "✓ PASS"
   Mood mood = Mood::open;
   std::vector<RichText> paragraphs;
 };

@@ -23,7 +23,7 @@ struct Place {
 struct Segment {
   Place from, to;
 };
-/// Lines through places; each run is continuous.
+/// Lines through positions; each run is continuous.
 struct Polyline {
   std::vector<std::vector<Place>> runs;
 };

@@ -16,7 +16,7 @@ namespace todbench {
 
 /// Returns figures of the signal transfer.
 [[nodiscard]] std::optional<FigurePairs> transfer_figures(const SessionMeasures& measures, bool camera);
-/// Returns one figure for each place and axis: camera with intervals, twin, closed form.
+/// Returns one figure for each position and axis: camera with intervals, twin, closed form.
 [[nodiscard]] std::optional<FigurePairs> mtf_figures(const SessionMeasures& measures, bool camera);
 /// Returns figures of the drift, of the camera alone.
 [[nodiscard]] std::optional<FigurePairs> drift_figures(const SessionMeasures& measures, bool camera);

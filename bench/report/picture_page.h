@@ -15,7 +15,7 @@ struct PagePicture {
   std::string png;  ///< bytes of a PNG file
 };
 
-/// Place of the pictures relative to the other sections.
+/// Position of the pictures relative to the other sections.
 enum class PicturePlace { first, last };
 
 /// Returns render_html() of the document with a section of pictures before or after its other sections. The pictures

@@ -59,7 +59,7 @@ struct Plot {
   PlotAxis x, y;
   std::vector<PlotBand> bands;
   std::vector<PlotReference> references;
-  /// Later series are drawn over earlier ones and precede them in the legend.
+  /// Later series are drawn over earlier series and precede them in the legend.
   std::vector<PlotSeries> series;
 };
 

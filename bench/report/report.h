@@ -33,8 +33,8 @@
 
 namespace todbench {
 
-/// Verdict at the top of a report. A report shows decisions that the session contains and makes none itself. The
-/// verdict of an interrupted run or of a run without limits is never "pass".
+/// Verdict at the top of a report. A report shows the decisions that the session contains; it makes no decisions
+/// itself. The verdict of an interrupted run or of a run without limits is never "pass".
 enum class ReportVerdict {
   pass,          ///< every limit is met
   fail,          ///< a limit is not met
@@ -64,7 +64,7 @@ struct ReportData {
   double air_temperature_c = 20;  ///< air temperature of the plan
   std::optional<ViewedDisplay> display{};  ///< display of the plan; empty: none
   std::string target;                      ///< instruments with serial numbers
-  std::vector<TargetPlate> plates;         ///< in identity mounting
+  std::vector<TargetPlate> plates;         ///< plates in identity mounting
   std::vector<SetUpRecord> set_ups;
   std::vector<Presentation> presentations;  ///< presentations of the camera, or of the simulation without a camera
   std::string observer;                     ///< name and version
@@ -114,9 +114,9 @@ struct ReportData {
   std::vector<Interruption> interruptions;  ///< camera losses after which the run continued
 };
 
-/// Returns the verdict to show: the decision of the session's verdict, with three exceptions. Changed files always give
-/// `changed`. An interrupted run gives `fail` if it failed, otherwise `interrupted`. A pass without limits, or no
-/// verdict, gives `not_judged`.
+/// Returns the verdict to show: the decision of the session's verdict, with three exceptions. If files were changed,
+/// the result is `changed`. For an interrupted run, the result is `fail` if the run failed, otherwise `interrupted`.
+/// For a pass without limits, or if there is no verdict, the result is `not_judged`.
 [[nodiscard]] ReportVerdict report_verdict(const ReportData& data);
 
 /// Returns the TOD curve of the report.

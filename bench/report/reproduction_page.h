@@ -27,7 +27,7 @@ struct ReproducedThreshold {
 
 /// Kind of a figure. It determines whether differences are relative or in percentage points.
 enum class FigureKind {
-  amount,  ///< in its unit; differences are relative
+  amount,  ///< a value in its unit; differences are relative
   share,   ///< share of a total in percent; differences are in percentage points
   change,  ///< signed change of one value relative to another in percent; differences are in percentage points
 };
@@ -37,7 +37,7 @@ struct ReproducedFigure {
   FigureKind kind = FigureKind::amount;
   std::string quantity, unit;
   std::string published;                  ///< as the paper states it; empty: not stated
-  std::optional<double> published_value;  ///< in `unit`, if the statement is a number
+  std::optional<double> published_value;  ///< published number in `unit`; empty if the statement is not a number
   std::optional<double> value;
   Interval ci95;
   std::string remark;  ///< reason for a difference, or dependence
@@ -65,7 +65,7 @@ struct Reproduction {
   std::vector<std::pair<std::string, std::string>> settings;
 };
 
-/// Returns the difference between the value of this program and the published one: in percentage points for
+/// Returns the difference between the value of this program and the published value: in percentage points for
 /// percentages, otherwise in percent of the published value.
 [[nodiscard]] std::string difference_in_words(const ReproducedFigure& figure);
 

@@ -15,8 +15,8 @@ namespace todbench {
 struct AnswersAtSize {
   double size_mrad = 0;
   double correct = 0, total = 0;  ///< sum of probabilities for graded answers
-  /// Number of groups (presentations or places), and sums over the groups: squares of `correct`, products of `correct`
-  /// and `total`, squares of `total`.
+  /// Number of groups (presentations or positions), and sums over the groups: squares of `correct`, products of
+  /// `correct` and `total`, squares of `total`.
   double groups = 0, squares = 0, products = 0, total_squares = 0;
   bool graded = false;
 };
@@ -29,9 +29,10 @@ struct AnswersAtSize {
 [[nodiscard]] Interval wilson_interval(double correct, double total);
 
 /// Returns the 95 % interval of the proportion at a size. Binary answers: Wilson's interval, with all answers treated
-/// as independent. Graded answers scatter less than binomially, so their interval is m -+ t s over K presentations,
-/// limited to 0 and 1, with s^2 = K / (K - 1) sum (c - m n)^2 / N^2 for the ratio of sums m. It is open below two
-/// presentations, and wider than necessary if the effects of the phases in a set-up cancel.
+/// as independent. Graded answers scatter less than binomially. Their interval is therefore m -+ t s over K
+/// presentations, limited to 0 and 1, with s^2 = K / (K - 1) sum (c - m n)^2 / N^2 for the ratio of sums m. The
+/// interval is open for fewer than two presentations, and wider than necessary if the effects of the phases in a set-up
+/// cancel.
 [[nodiscard]] Interval proportion_interval(const AnswersAtSize& answers);
 
 /// Curve with its name in figures.

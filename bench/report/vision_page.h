@@ -37,7 +37,7 @@ struct VisionPoint {
 
 /// Figures of one kind.
 struct VisionKind {
-  std::string name;      ///< for programs, "small_discs"
+  std::string name;      ///< name for programs, "small_discs"
   std::string title;     ///< "Small discs"
   std::string quantity;  ///< quantity of the points with its unit: "sensitivity (1 / contrast)"
   VisionError error = VisionError::decibel;

@@ -74,7 +74,8 @@ struct LaboratorySummary {
 /// Laboratory or single result with a deviation that is too large to be random.
 struct OutlyingResult {
   std::string laboratory, item, quantity;  ///< empty item: the laboratory over all its items
-  double zeta = 0;                         ///< zeta against the results that were not yet excluded when it was found
+  double zeta = 0;                         ///< zeta against the results that were not yet excluded when this one was
+                                           ///< found
   double p = 0;                            ///< probability that any laboratory has such a deviation by chance
 };
 
@@ -82,9 +83,9 @@ struct OutlyingResult {
 struct RoundRobin {
   std::vector<ItemComparison> items;
   std::vector<LaboratorySummary> laboratories;  ///< by name
-  std::vector<OutlyingResult> outlying;         ///< in the order in which they were found
+  std::vector<OutlyingResult> outlying;         ///< outlying results in the order in which they were found
   /// True if several laboratories are outlying. Reference values and estimates then come from all results, because the
-  /// agreement of the others is a consequence of the selection.
+  /// agreement of the other laboratories is a consequence of the selection.
   bool reference_from_all = false;
   /// Returns whether no result is outlying and every item is consistent.
   [[nodiscard]] bool consistent() const;
@@ -93,11 +94,11 @@ struct RoundRobin {
 /// Probability that a comparison of correct laboratories reports one of them or one of their results as outlying.
 inline constexpr double outlying_significance = 0.025;
 
-/// Evaluates a comparison. The errors of a laboratory are taken as independent between items. The most improbable
-/// outlying laboratory or result is excluded, and the others are tested again. If this would leave no more than half of
-/// the laboratories of an item, none is excluded. If several laboratories are outlying, all may understate their
-/// uncertainties; the reference values then come from all results. `seed`: seed of the draws for the medians. Errors:
-/// `invalid_input` (no item, or an item with fewer than two laboratories).
+/// Evaluates a comparison. The errors of a laboratory are assumed to be independent between items. The most improbable
+/// outlying laboratory or result is excluded, and the remaining results are tested again. If no more than half of the
+/// laboratories of an item would remain, none is excluded. If several laboratories are outlying, all laboratories may
+/// understate their uncertainties; the reference values then come from all results. `seed`: seed of the draws for the
+/// medians. Errors: `invalid_input` (no item, or an item with fewer than two laboratories).
 [[nodiscard]] Result<RoundRobin> evaluated(std::vector<ComparedItem> items, std::uint64_t seed);
 
 }  // namespace todbench

@@ -42,9 +42,9 @@ struct ConsistencyCheck {
 /// Tests the consistency of these values.
 [[nodiscard]] ConsistencyCheck consistency(std::span<const LaboratoryValue> values);
 
-/// Returns the positions of the largest subset that is consistent; of several, the one with the smallest chi2 (Cox
-/// 2007). Up to 16 values every subset is tried. With more values, the value farthest from the mean of the others, in
-/// units of its uncertainty, is removed until the remaining values are consistent.
+/// Returns the positions of the largest subset that is consistent; if there are several such subsets, of the subset
+/// with the smallest chi2 (Cox 2007). Up to 16 values every subset is tried. With more values, the value farthest from
+/// the mean of the other values, in units of its uncertainty, is removed until the remaining values are consistent.
 [[nodiscard]] std::vector<std::size_t> largest_consistent_subset(std::span<const LaboratoryValue> values);
 
 /// Median by Monte Carlo (Cox 2002, procedure B). The same seed gives the same draws.

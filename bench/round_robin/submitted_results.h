@@ -27,10 +27,10 @@ struct SubmittedResult {
 [[nodiscard]] Result<std::vector<SubmittedResult>> parse_submitted_results(std::string_view text,
                                                                            std::string_view name);
 
-/// Reads the values of one session folder: the laboratory is the place of its plan, the item the unit of its plan, and
-/// the quantities are the acuity by set contrast and the measures that have an uncertainty. Logarithms are transformed
-/// back. The uncertainty of an acuity includes the budget rows that are common to a series. Errors: those of
-/// read_history_session() and open_session(); `invalid_input` if the plan names no place or no unit.
+/// Reads the values of one session folder. The laboratory is the `place` of its plan, and the item is the `unit` of its
+/// plan. The quantities are the acuity by set contrast and the measures that have an uncertainty. Logarithms are
+/// transformed back. The uncertainty of an acuity includes the budget rows that are common to a series. Errors: those
+/// of read_history_session() and open_session(); `invalid_input` if the plan names no place or no unit.
 [[nodiscard]] Result<std::vector<SubmittedResult>> session_results(const std::filesystem::path& folder);
 
 /// Groups results by item and quantity, in the order of their names. Errors: `invalid_input` (a laboratory twice for

@@ -23,7 +23,7 @@ enum class AlignmentHint {
   not_found,     ///< registration failed
   out_of_focus,  ///< edge blur at least 1.3 times the blur of the sensor description
   tilted,        ///< magnification differs by more than 1 % over the plate or between directions
-  near_edge,     ///< an observer's window leaves the picture
+  near_edge,     ///< an observer's window is partly outside the picture
   drifting,      ///< the plate has moved by more than 0.2 px since the first look
 };
 /// Returns the name of the enumerator.
@@ -49,7 +49,7 @@ struct Alignment {
   Polygon plate_px;                      ///< the corners of the plate
   double expected_blur_px = 0;           ///< edge blur of the simulated sensor; 0: unknown
   double drift_px = 0;                   ///< drift of the centre of the plate since the first look
-  double temporal_noise_k = 0;           ///< per pixel
+  double temporal_noise_k = 0;           ///< temporal noise of a pixel
   std::vector<AlignmentRemark> remarks;  ///< empty: ready to measure
 };
 

@@ -53,7 +53,7 @@ struct ExperimentOptions {
   std::optional<OriginRecord> origin{};  ///< origin of a run on the recorded frames of another session; empty: none
 };
 
-/// Result of a run. The session folder contains the same.
+/// Result of a run. The session folder contains the same results.
 struct ExperimentOutcome {
   std::filesystem::path folder;
   TodCurve curve;                ///< measured, or simulated by simulate_plan()
@@ -61,15 +61,15 @@ struct ExperimentOutcome {
   std::optional<Comparison> comparison;
   Verdict verdict;                                ///< same as verdict.json
   std::optional<CameraMeasures> measures{};       ///< physical measures of the camera, or of a simulation alone
-  std::optional<CameraMeasures> twin_measures{};  ///< of the twin
-  SensorPlan effects;                             ///< of the simulated sensor
+  std::optional<CameraMeasures> twin_measures{};  ///< physical measures of the twin
+  SensorPlan effects;                             ///< effects of the simulated sensor
   std::optional<DisplayRecord> at_display{};      ///< thresholds at the operator's display; at_display()
-  RunFigures figures;                             ///< of `curve`
+  RunFigures figures;                             ///< figures of the run that produced `curve`
   double twin_s = 0;                              ///< duration of the simulation of `twin`
   std::optional<TimeForecast> forecast{};         ///< made before the first presentation; as Provenance::forecast
   std::optional<Error> ended_by;                  ///< reason of an early stop; the folder is valid, marked interrupted
-  std::vector<Presentation> presentations{};      ///< of `curve`
-  std::optional<CurveUncertainty> uncertainty{};  ///< of `curve`; empty if the plan has no budget
+  std::vector<Presentation> presentations{};      ///< presentations of `curve`
+  std::optional<CurveUncertainty> uncertainty{};  ///< uncertainty of `curve`; empty if the plan has no budget
 };
 
 /// Measures with the devices of the plan, simulates its twin and compares. Fails if no data could be measured: without

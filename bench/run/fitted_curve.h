@@ -24,7 +24,7 @@ namespace todbench {
 
 /// Answers of a run as they are fitted, and the function over contrast if each presentation has its own contrast.
 struct FittedTrials {
-  std::vector<Trial> own{};                  ///< at the set contrasts
+  std::vector<Trial> own{};                  ///< answers at the set contrasts
   std::optional<ContrastSurface> surface{};  ///< empty: contrasts were settled
   std::optional<Error> failed{};
 
@@ -44,7 +44,7 @@ struct FittedTrials {
                                            const std::map<double, double>& shown_delta_t_k, const TodCurve* known,
                                            std::stop_token stop);
 
-/// Sets the curve to the fit over all contrasts of a ramp. Returns the findings of the ramp; notes and errors go to
+/// Sets the curve to the fit over all contrasts of a ramp. Returns the findings of the ramp; adds notes and errors to
 /// `said`.
 [[nodiscard]] std::vector<AdequacyFinding> take_ramp_of(TodCurve& curve, TwinShapesOutcome& said,
                                                         const MeasurementResult& run, const FittedTrials& fitted,
@@ -67,7 +67,7 @@ void keep_shape(MeasurementResult& result, const TwinShapesOutcome& outcome, con
 struct FittedCurve {
   TodCurve curve;
   TwinShapesOutcome said;
-  std::optional<TodCurve> by_twin{};   ///< with the function of the twin, if `curve` has the surrogate's
+  std::optional<TodCurve> by_twin{};   ///< fit with the function of the twin, if `curve` has the surrogate's function
   std::map<double, double> model_u{};  ///< by set contrast, if the pictures contradict the model
 
   [[nodiscard]] const TodCurve& functions_of_twin() const { return by_twin ? *by_twin : curve; }

@@ -17,14 +17,14 @@
 
 namespace todbench {
 
-/// Fits to the answers so far.
+/// Fits to the answers that have arrived.
 struct FittedCurves {
   std::uint64_t version = 0;  ///< increases with every fit
   std::optional<TodCurve> measured, twin;
 };
 
-/// Fit of the answers so far, about once a second on its own thread, so that the run does not wait. Uses the same
-/// function as the result (RunningFit). Any thread.
+/// Fits the answers that have arrived, about once a second on its own thread. The run does not wait for the fit. Uses
+/// the same function as the result (RunningFit). Any thread.
 class LiveCurve {
  public:
   explicit LiveCurve(const Plan& plan);

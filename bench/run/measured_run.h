@@ -26,9 +26,9 @@ namespace todbench {
 struct MeasuredRun {
   MeasurementResult result;
   MeasurementOptions options;
-  std::map<double, ProportionTable> functions{};  ///< for the stopping rule of an adaptive schedule
+  std::map<double, ProportionTable> functions{};  ///< functions for the stopping rule of an adaptive schedule
   std::vector<ChangedSetting> changed{};          ///< settings that changed between opening and last frame
-  double measures_s = 0;                          ///< duration of the physical measures; 0: none were taken
+  double measures_s = 0;                          ///< duration of the physical measures; 0: no measures
 };
 
 /// Returns the response of the contrast estimator for each plate, computed with the twin of the plan.
@@ -42,13 +42,13 @@ struct MeasuredRun {
                                                CameraSurrogate& surrogate, OpenedBench& bench, const OpenSession& open,
                                                const AddedStages& added, std::stop_token stop);
 
-/// Returns the curve of these trials without the shape of the twin. Fails if the trials give no curve.
+/// Returns the curve of these trials without the shape of the twin. Fails if no curve can be fitted to the trials.
 [[nodiscard]] Result<TodCurve> curve_of_camera(MeasurementResult& result, std::span<const Trial> trials,
                                                const Plan& plan, const ExperimentInputs& inputs, const SourceInfo& info,
                                                const OpenSession& open);
 
-/// Takes the camera's physical measures and their time, then checks that the recording is complete on disk.
-/// `recording`: null if none is made. An error ends the run.
+/// Measures the physical measures of the camera and stores their duration. Then checks that the recording is complete
+/// on disk. `recording`: null if there is no recording. An error ends the run.
 [[nodiscard]] std::optional<CameraMeasures> measures_of_camera(MeasuredRun& measured, const Plan& plan,
                                                                const ExperimentInputs& inputs, OpenedBench& bench,
                                                                FrameStreamWriter* recording, const OpenSession& open,

@@ -13,9 +13,9 @@
 
 namespace todbench {
 
-/// Measures with the bench after the trials. `options` are the options of the trials; the plates come from `inputs`.
-/// For a measure that cannot be taken, the result contains a reason and the session a note. Empty: the plan requests
-/// none. Errors: `interrupted`.
+/// Measures with the bench after the trials. `options` are the options of the trials; the plates come from `inputs`. If
+/// a measure is not possible, the result contains the reason, and a note of the session states it. Empty: the plan
+/// requests no measures. Errors: `interrupted`.
 [[nodiscard]] Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan,
                                                                       const MeasurementOptions& options,
                                                                       const ExperimentInputs& inputs,

@@ -33,8 +33,8 @@ inline constexpr std::string_view answers_format = "2";
 [[nodiscard]] Reading target_answer(const TargetState& set, const Result<PresentedTarget>& said);
 
 /// Replay of the recorded answers to the same questions in the same order. Errors: `invalid_input` for a question that
-/// differs from the recorded one, and for all later ones; `disconnected` after the last answer, because the frames end
-/// there too. One thread at a time.
+/// differs from the recorded question, and for all later questions; `disconnected` after the last answer, because there
+/// are no further frames. One thread at a time.
 class RecordedAnswers {
  public:
   /// `name`: name of the recording in messages.
@@ -55,7 +55,7 @@ class RecordedAnswers {
 
   /// Returns whether every recorded answer was given.
   [[nodiscard]] bool at_end() const { return next_ == readings_.size(); }
-  /// Succeeds if all questions so far agree with the recording.
+  /// Succeeds if all previous questions agree with the recording.
   [[nodiscard]] Result<void> agreed() const;
 
  private:

@@ -15,7 +15,7 @@ namespace todbench {
 
 /// Result of a replay.
 struct ReplayOutcome {
-  ExperimentOutcome run;  ///< with a new session folder
+  ExperimentOutcome run;  ///< outcome of the run with a new session folder
   bool same_trials = false;
   /// Whether the fits of the measured curve are equal. Empty if the session ended before its fit, or if its program
   /// version computed the intervals of graded answers without the positions in the picture.

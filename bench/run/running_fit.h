@@ -13,7 +13,7 @@
 
 namespace todbench {
 
-/// Fits the answers so far with the same function as the result. One thread at a time.
+/// Fits the answers that have arrived, with the same function as the result. One thread at a time.
 class RunningFit {
  public:
   explicit RunningFit(Plan plan) : plan_(std::move(plan)) {}

@@ -27,7 +27,7 @@ void note(SessionFolder& folder, const ExperimentListener& listener, const std::
 /// Adds a note if the last self-test of this program on this computer failed.
 void note_failed_selftest(const OpenSession& open, const Provenance& provenance);
 
-/// Ends a session without a curve: leaves a valid folder and returns the reason.
+/// Ends a session without a curve, completes its folder, and returns the reason.
 [[nodiscard]] tl::unexpected<Error> abandon(const OpenSession& open, const Plan& plan, const Provenance& provenance,
                                             Error error);
 

@@ -30,7 +30,7 @@ enum class QueuedRunState {
   running,
   finished,  ///< the session has a verdict
   stopped,   ///< ended early, or removed from the queue; the reason is in the state
-  failed,    ///< without data: a device could not be opened, or an error at the start
+  failed,    ///< ended without data: a device could not be opened, or an error occurred at the start
 };
 /// Returns "queued", "running", "finished", "stopped" or "failed".
 [[nodiscard]] std::string_view to_string(QueuedRunState state);

@@ -24,8 +24,8 @@ namespace todbench {
 /// Result of the test.
 enum class SceneDependenceVerdict {
   independent,   ///< all intervals lie within the tolerance
-  depends,       ///< an interval lies outside it
-  inconclusive,  ///< neither
+  depends,       ///< an interval lies outside the tolerance
+  inconclusive,  ///< an interval lies partly outside the tolerance, and none completely
 };
 /// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(SceneDependenceVerdict verdict);
@@ -57,7 +57,8 @@ struct SceneDependence {
 
 /// Options of the measurement.
 struct SceneDependenceOptions {
-  int cycles = 6;         ///< at least 3; the bar is out, in, in, out in each cycle, so that a linear drift cancels
+  int cycles = 6;         ///< cycles, at least 3; the bar is out, in, in, out in each cycle, so that a linear drift
+                          ///< cancels
   int frames = 16;        ///< frames averaged per position of the bar
   int settle_frames = 0;  ///< frames discarded after the bar has moved, in addition to the number in the plan
   double tolerance_percent = 2;  ///< largest allowed change of the response
@@ -82,8 +83,8 @@ using MoveBar = std::function<Result<void>(bool in, std::stop_token stop)>;
 /// have a linear scale and are clipped at full scale.
 [[nodiscard]] std::unique_ptr<FrameSource> with_hot_bar(std::unique_ptr<FrameSource> camera, cv::Rect bar,
                                                         double kelvin, std::shared_ptr<const bool> in);
-/// Returns the place of the bar: left of a plate in the centre of the picture, 1/20 of its width and 3/5 of its height.
-/// Empty: too little room.
+/// Returns the position of the bar: left of a plate in the centre of the picture, 1/20 of its width and 3/5 of its
+/// height. Empty: too little room.
 [[nodiscard]] std::optional<cv::Rect> place_of_bar(cv::Size picture, const TargetPlate& plate, double px_per_mm);
 
 /// Measures the first plate of the plan in its first mounting at its largest contrast. With the camera of the plan, the

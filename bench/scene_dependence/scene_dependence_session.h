@@ -34,8 +34,8 @@ struct SceneDependenceSession {
 [[nodiscard]] Verdict verdict_on(const SceneDependence& found, const LimitsPlan& limits);
 
 /// Runs plan_scene_dependence() into a session folder: scene-dependence.json, measures.json with the ratios and both
-/// pictures, verdict, report. Errors: those of plan_scene_dependence(). An error before the first frame leaves no
-/// folder; a later one leaves a folder that is marked interrupted.
+/// pictures, verdict, report. Errors: those of plan_scene_dependence(). After an error before the first frame there is
+/// no folder. After a later error the folder is marked interrupted.
 [[nodiscard]] Result<SceneDependenceSession> measure_scene_dependence_session(const LoadedPlan& loaded,
                                                                               const SceneDependenceTask& task,
                                                                               const ExperimentOptions& options,

@@ -35,7 +35,7 @@ struct BarsSitting {
   std::vector<BarsAnswer> answers{};
 };
 
-/// Threshold of a sitting at one place.
+/// Threshold of a sitting for one place, which is a group of four bars or a spot.
 struct BarsThreshold {
   std::string place;
   EdgeAxis axis = EdgeAxis::x;
@@ -45,10 +45,10 @@ struct BarsThreshold {
 /// Returns one threshold for each place of the answers: x before y, low frequencies first, spots last.
 [[nodiscard]] std::vector<BarsThreshold> bars_thresholds(const BarsSitting& sitting);
 
-/// Mean of one place over people. All people judged the same frames, so the set-ups contribute an error that is common
-/// to all people. The interval combines the scatter between people with this common variance (n V - v) / (n - 1). n is
-/// the number of people, V the jackknife variance of the mean over the set-ups, and v the mean of the jackknife
-/// variances of the single sittings.
+/// Mean threshold of one place over people. All people judged the same frames, so the set-ups contribute an error that
+/// is common to all people. The interval combines the scatter between people with this common variance (n V - v) / (n -
+/// 1). n is the number of people, V the jackknife variance of the mean over the set-ups, and v the mean of the
+/// jackknife variances of the single sittings.
 struct BarsMean {
   /// Place of the mean. Its threshold is not set.
   BarsThreshold of{};

@@ -22,7 +22,7 @@ class JsonFields;
 struct ShownPatch {
   /// Samples that the model observer judged.
   cv::Mat1f kelvin;
-  double black_k = 0, white_k = 0;  ///< levels shown black and white
+  double black_k = 0, white_k = 0;  ///< levels displayed as black and as white
   int magnification = 1;            ///< screen pixels per sample; bicubic without a display in the plan
   std::optional<int> limit_ms;      ///< maximum display time; empty: until answered
   double response_s = 0;            ///< time from display to answer
@@ -84,8 +84,8 @@ struct MeanOverPeople {
                                                const Plan& plan);
 /// Adds the answers of a person to a finished session and lists the files in the manifest: trials_human.csv,
 /// shown_human.csv and fits_human.json for the first person, people/N-trials.csv, people/N-shown.csv and
-/// people/N-fits.json for the N-th, and people/people.json with the facts of all. Earlier answers remain. Errors: `io`;
-/// `invalid_input` (no manifest, or files that differ from it), in which case no file is written.
+/// people/N-fits.json for the N-th, and people/people.json with the facts of all people. Earlier answers remain.
+/// Errors: `io`; `invalid_input` (no manifest, or files that differ from it), in which case no file is written.
 [[nodiscard]] Result<void> add_person(const std::filesystem::path& session, const PersonRecord& person);
 /// Reads the record of the first person from a session that open_session() accepted; empty if no person has answered.
 /// Errors: `invalid_input` with file and line or key.

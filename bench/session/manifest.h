@@ -71,8 +71,9 @@ using ManifestEntries = std::map<std::string, ManifestEntry>;
 [[nodiscard]] Result<void> write_manifest(const std::filesystem::path& folder, const ManifestEntries& entries);
 /// Writes manifest.json with the entries of the existing files.
 [[nodiscard]] Result<void> write_manifest(const std::filesystem::path& folder);
-/// Updates the entries of `files` in manifest.json and keeps the others, for example after a report is rebuilt. Errors:
-/// `io`; `invalid_input` (no manifest, a manifest that the program did not write in this form, or a signed session).
+/// Updates the entries of `files` in manifest.json and keeps the other entries, for example after a report is rebuilt.
+/// Errors: `io`; `invalid_input` (no manifest, a manifest that the program did not write in this form, or a signed
+/// session).
 [[nodiscard]] Result<void> refresh_manifest(const std::filesystem::path& folder, const std::vector<std::string>& files);
 
 }  // namespace todbench

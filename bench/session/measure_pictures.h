@@ -17,7 +17,7 @@ inline constexpr std::string_view pictures_folder = "pictures";
 
 /// Picture of measures.json.
 struct MeasurePicture {
-  std::string file;  ///< relative to the session folder: "pictures/main-temporal_noise.png"
+  std::string file;  ///< path relative to the session folder: "pictures/main-temporal_noise.png"
   std::string png;   ///< bytes
 };
 

@@ -20,13 +20,14 @@ struct MeasureRow {
   /// Adds the quantities of the measure, and the measure itself if a figure or a table shows it; no effect if it was
   /// not taken.
   void (*add)(MeasureLines& out, const CameraMeasures& measures);
-  /// Describes the part of a measure that figures and tables show. It is null if the measure was not taken; it is read
-  /// if it is present and not null.
+  /// Describes the part of a measure that figures and tables show. The part is null if the measure was not taken. The
+  /// reader reads the part if it is present and not null.
   void (*fields)(JsonFields& json, const std::string& key, MeasureLines& lines) = nullptr;
-  /// Returns the part of a measure without `fields`, which is not read; null if the measure was not taken.
+  /// Returns the part of a measure that has no `fields`. This part is written but not read; null if the measure was not
+  /// taken.
   Json (*to_json)(const CameraMeasures& measures) = nullptr;
   bool (*valid)(const MeasureLines& lines) = nullptr;  ///< checks the numbers read; null: always valid
-  std::string_view mistake{};                          ///< sentence if they are not valid
+  std::string_view mistake{};                          ///< message if the numbers are not valid
 };
 
 /// Return the row of a measure; each function is defined in the file of its measure.

@@ -25,8 +25,8 @@ struct MeasureLine {
   std::optional<Interval> expanded{};
 };
 
-/// Returns a line in the unit of the quantity (table of quantities). `name`: name of the quantity, with its place if it
-/// has one: "mtf_x (corner)".
+/// Returns a line in the unit of the quantity (table of quantities). `name`: name of the quantity, with its position if
+/// it has one: "mtf_x (corner)".
 [[nodiscard]] MeasureLine measure_line(std::string name, std::optional<double> value, const Interval& ci95,
                                        std::string conditions);
 
@@ -35,13 +35,13 @@ struct MeasureLine {
 struct PlatePanels {
   int width = 0, height = 0;  ///< size of each picture in pixels
   std::string seen, expected, difference;
-  double black_k = 0, white_k = 0;  ///< grey scale of the first two
-  double difference_k = 0;          ///< grey scale of the third: black at minus this, white at plus this
+  double black_k = 0, white_k = 0;  ///< grey scale of the first two pictures
+  double difference_k = 0;          ///< grey scale of the difference: black at -difference_k, white at +difference_k
   /// Outlines of the detected shapes, in pixels of the panels (pixel centres at integers).
   std::vector<Polygon> outlines;
 };
 
-/// All measures of one camera, and the reasons for missing ones.
+/// All measures of one camera, and the reasons for missing measures.
 struct MeasureLines {
   std::vector<MeasureLine> lines;
   // Results for figures and tables. After measure_lines() they are complete; after measures_from() they contain only
@@ -61,7 +61,7 @@ struct MeasureLines {
   std::vector<PixelMap> maps{};
   std::vector<std::string> reasons;
 };
-/// Returns the lines of all measures that were taken, their complete results, and the reasons for missing ones.
+/// Returns the lines of all measures that were taken, their complete results, and the reasons for missing measures.
 [[nodiscard]] MeasureLines measure_lines(const CameraMeasures& measures);
 
 /// Returns the quantities of the lines as input of judge().
@@ -78,7 +78,7 @@ struct SessionMeasures {
 /// {...}, "latency": {...}, "mrtd": {...}, "gain_control": {...}, "maps": [...], "picture": {...}, "reasons": [...]},
 /// "twin": the same or null}.
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
-/// Returns the same for a file. Errors: `internal` with the key (a number that is not finite).
+/// Returns the same object as content of measures.json. Errors: `internal` with the key (a number that is not finite).
 [[nodiscard]] Result<Json> measures_record(const std::optional<CameraMeasures>& main,
                                            const std::optional<CameraMeasures>& twin);
 /// Returns the record of one camera as "main", with quantities, maps and reasons only. Errors: as above.

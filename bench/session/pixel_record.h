@@ -14,7 +14,7 @@ namespace todbench {
 struct PixelMap {
   std::string name;  ///< "temporal_noise", "fixed_pattern", "triangles", "defects"
   int width = 0, height = 0;
-  double black_k = 0, white_k = 0;  ///< levels shown black and white; both 0: a colour picture
+  double black_k = 0, white_k = 0;  ///< levels displayed as black and as white; both 0: a colour picture
   std::string png;
   std::string note{};  ///< additional remark; empty: none
 };

@@ -21,7 +21,7 @@ namespace todbench {
 enum class SessionState {
   running,  ///< in progress, or cut off by a crash
   complete,
-  interrupted,  ///< stopped on request or by an error; the trials so far are valid
+  interrupted,  ///< stopped on request or by an error; earlier trials are valid
 };
 /// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(SessionState state);
@@ -60,14 +60,15 @@ struct RunRecord {
 /// Optics and noise of the camera as estimated from its own frames (bench/twin/camera_surrogate.h).
 struct CameraOpticsRecord {
   double aberration_sigma_pitch = 0, aberration_se_pitch = 0;
-  double f_number_ratio = 1, f_number_ratio_se = 0;  ///< relative to the sensor file
+  double f_number_ratio = 1, f_number_ratio_se = 0;  ///< f-number relative to the sensor file, and standard error
   int samples_per_pitch = 1;
   double chi2 = 0, chi2_limit = 0, degrees_of_freedom = 0;
   double netd_k = 0, row_noise_k = 0, column_noise_k = 0, fixed_pattern_k = 0, noise_correlation = 0;
-  std::optional<double> halo_share{}, halo_share_se{}, halo_sigma_px{};  ///< beyond the halo of the twin
+  std::optional<double> halo_share{}, halo_share_se{}, halo_sigma_px{};  ///< halo in excess of the twin's: share,
+                                                                         ///< standard error, sigma
   bool refused = false;                                                  ///< chi2 exceeds its limit
   bool surrogate_taken = false;  ///< the camera's fit uses the function of the surrogate
-  /// Response of the contrast estimator by plate. Contrasts were divided by it.
+  /// Response of the contrast estimator by plate. Contrasts were divided by this response.
   std::map<std::string, double> contrast_response{};
   bool operator==(const CameraOpticsRecord&) const = default;
 };

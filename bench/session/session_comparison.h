@@ -16,9 +16,9 @@ struct SessionComparison {
 
 /// Compares the curves of two sessions with `margin_percent`. Default: the smaller margin of both plans, or 10 % if no
 /// plan has a margin. Exchanging the arguments inverts the ratios and keeps the verdicts and errors. Sessions with
-/// different plates are compared, with a finding that makes the result inconclusive. Errors: `invalid_input`, one
-/// sentence (a session without a curve, trials that both sessions contain, different forms or lapse rates of the fit,
-/// different observers or observer parameters), and those of compare().
+/// different plates are compared, with a finding that makes the result inconclusive. Errors: `invalid_input` (a session
+/// without a curve, trials that both sessions contain, different forms or lapse rates of the fit, different observers
+/// or observer parameters), and those of compare().
 [[nodiscard]] Result<SessionComparison> compare_sessions(const Session& a, const Session& b,
                                                          std::optional<double> margin_percent);
 

@@ -27,7 +27,7 @@ struct SessionSignature {
   std::string signed_utc;
   std::string manifest_sha256{};       ///< digest of the signed manifest
   std::string manifest_file_sha256{};  ///< SHA-256 of the file manifest.json
-  std::string public_key{};            ///< in the format of its program
+  std::string public_key{};            ///< public key in the format of its program
   [[nodiscard]] std::string key_sha256() const;
 };
 

@@ -30,8 +30,8 @@ class TrialsWriter {
 };
 
 /// Reads a file of TrialsWriter, every number exactly. An unknown since_nuc_s is an empty field. Files of earlier
-/// versions lack the last columns. Missing columns give 0 saturated pixels, no probability_correct, one frame, and no
-/// position in the picture. Errors: `invalid_input` "FILE:LINE: ..." for any other content.
+/// versions lack the last columns. Missing columns are read as 0 saturated pixels, no probability_correct, one frame,
+/// and no position in the picture. Errors: `invalid_input` "FILE:LINE: ..." for any other content.
 [[nodiscard]] Result<std::vector<Trial>> read_trials(const std::filesystem::path& file);
 
 /// Reads counts for one psychometric fit: columns size, correct, total and optionally cluster (whole number >= 0), in

@@ -86,8 +86,8 @@ struct IdentificationStudy {
   SetCriterion m75, v50;          ///< criteria of the set: M75 is M at r75_m on the TOD curve, and V50 is M75 / 0.6
   std::string no_m75_because;     ///< empty with an M75
   std::vector<TodThreshold> tod;  ///< TOD curve of the same sensor and observer
-  /// S75 of each point of `tod` over the open parameters of an observer with an eye; empty if a limit of the parameters
-  /// gives no S75.
+  /// S75 of each point of `tod` over the open parameters of an observer with an eye; empty if there is no S75 at a
+  /// limit of the parameters.
   std::vector<std::optional<std::pair<double, double>>> tod_spread_mrad;
   std::optional<RangePrediction> predicted;  ///< predicted from the TOD curve with the m75 of the task; empty: no curve
   /// Spread of the predicted range, as SetCriterion::spread.
@@ -105,7 +105,7 @@ struct IdentificationStudy {
                                                            const SetCriterion& r75_m);
 
 /// Runs the study. The proportion over range is made monotone (pool adjacent violators) and interpolated linearly in ln
-/// range. The TOD curve holds for a single frame in the same motion. There is no curve with stages, with sums of
+/// range. The TOD curve is valid for a single frame in the same motion. There is no curve with stages, with sums of
 /// frames, or with motion through turbulent paths; a note states this. Errors: `invalid_input` (ranges that do not
 /// increase, or that exceed the table of the air), those of identify(), `interrupted`.
 [[nodiscard]] Result<IdentificationStudy> study_identification(const IdentificationStudyTask& task);

@@ -18,7 +18,7 @@ namespace todbench {
 /// MRTD to simulate.
 struct MrtdStudyTask {
   VirtualMrtdTask trial;      ///< experiment; its axis is one of `axes`
-  std::vector<BarAxis> axes;  ///< at least one
+  std::vector<BarAxis> axes;  ///< axes to test, at least one
   FormulaConditions formula{};
   Atmosphere air{};
   double range_m = 0;  ///< from the camera to the bars; 0: no air
@@ -51,9 +51,9 @@ struct MrtdStudy {
 /// Errors: `invalid_input` (a range beyond the table of the air, or with a transmittance of 0), those of
 /// virtual_mrtd().
 ///
-/// A threshold beyond Nyquist is not an MRTD, because no phase shows four bars there. A threshold by the criterion
-/// `detection` is not an MRTD either, because an algorithm still discriminates alias patterns in which people see no
-/// four bars.
+/// A threshold beyond Nyquist is not an MRTD, because no phase results in a picture with four bars. A threshold by the
+/// criterion `detection` is not an MRTD either, because an algorithm still discriminates alias patterns in which people
+/// do not see four bars.
 [[nodiscard]] Result<MrtdStudy> study_mrtd(const MrtdStudyTask& task);
 
 /// Returns the plot of kelvin over cycles/mrad: the threshold with its interval, best phase, formula, ideal observer.

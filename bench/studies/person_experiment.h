@@ -29,8 +29,8 @@ enum class PersonTask {
 
 /// Properties that several trials share.
 struct PersonCondition {
-  double range_m = 0, transmittance = 1;  ///< identify
-  double frequency_per_mrad = 0;          ///< bars
+  double range_m = 0, transmittance = 1;  ///< range and transmittance of the air, for `identify`
+  double frequency_per_mrad = 0;          ///< frequency of the bars
   double contrast_k = 0;                  ///< contrast of the bars, or the mean dT_RSS of the set behind the air
   std::size_t place = 0;                  ///< index of range or frequency in the task
 };
@@ -39,13 +39,14 @@ struct PersonCondition {
 struct PersonTrial {
   std::size_t condition = 0;
   std::size_t truth = 0;   ///< index of the alternative; for `bars_resolved` 1 if no bars are shown
-  std::size_t aspect = 0;  ///< identify
+  std::size_t aspect = 0;  ///< index of the view of the target, for `identify`
   std::size_t phase = 0;   ///< phase of the bars; for `identify` it follows from the draw
-  /// Number of the noise draw. For bars, the left interval uses this number and the right interval the next one.
+  /// Number of the noise draw. For bars, the left interval uses this number and the right interval uses the next
+  /// number.
   std::uint64_t draw = 0;
 };
 
-/// Levels shown black and white, in kelvin above the background.
+/// Levels displayed as black and as white, in kelvin above the background.
 struct GreyScale {
   double black_k = -1, white_k = 1;
 };
@@ -78,7 +79,7 @@ class PersonExperiment {
   [[nodiscard]] const Json& description() const { return description_; }
 
  private:
-  PersonExperiment() noexcept(false) = default;  // that of Json may throw
+  PersonExperiment() noexcept(false) = default;  // the constructor of Json may throw
   void shuffle(std::uint64_t seed);
   void describe_bars();
   PersonTask task_ = PersonTask::identify;
@@ -100,7 +101,8 @@ struct ExperimentAnswer {
   std::optional<int> limit_ms{};
 };
 
-/// Right answers of one condition, with Wilson's 95 % interval; for `bars_resolved` only frames with bars.
+/// Correct answers of one condition, with Wilson's 95 % interval. For `bars_resolved`, only frames with bars are
+/// counted.
 struct PersonShare {
   int shown = 0, right = 0;
   Interval ci95;
@@ -109,13 +111,13 @@ struct PersonShare {
 /// Evaluation of the answers. The 75 % values are crossings as in Crossing75. Their intervals come from resampling the
 /// answers of every condition.
 struct PersonResult {
-  std::vector<PersonShare> conditions;                   ///< in their order
+  std::vector<PersonShare> conditions;                   ///< share of correct answers, by condition
   std::vector<std::vector<std::vector<int>>> confusion;  ///< [condition][shown][answered]
-  SetCriterion r75_m;                                    ///< identify
+  SetCriterion r75_m;                                    ///< range with 75 % correct, for `identify`
   /// Bars: threshold of every frequency. For `bars_resolved` empty if the person reported bars in more than a quarter
   /// of the frames without bars, because the threshold of a person who always answers yes is meaningless.
   std::vector<SetCriterion> thresholds_k;
-  /// `bars_resolved`: for every frequency, the frames without bars and how many of them were answered with yes.
+  /// For `bars_resolved`: number of frames without bars at every frequency, and number of yes answers to them.
   std::vector<PersonShare> false_alarms;
 };
 /// Evaluates the first answers.size() trials.
@@ -123,7 +125,8 @@ struct PersonResult {
                                          const std::vector<ExperimentAnswer>& answers);
 
 /// Writes person.json and answers.csv into a new folder. person.json contains the facts about the person, and results
-/// under the same keys as the output of `identify` or `mrtd`. Errors: `invalid_input` if it exists; `io` with the path.
+/// under the same keys as the output of `identify` or `mrtd`. Errors: `invalid_input` if the folder exists; `io` with
+/// the path.
 [[nodiscard]] Result<void> write_person(const std::filesystem::path& folder, const PersonExperiment& experiment,
                                         const std::vector<ExperimentAnswer>& answers, const PersonFacts& person,
                                         bool complete);

@@ -16,15 +16,16 @@
 
 namespace todbench {
 
-/// Noise of a recording: each pixel minus its mean over a block of successive frames, which removes scene, fixed
-/// pattern and drift. In the unit of the frames, scaled to the variance of single frames. For noise correlated in time,
-/// the mean also removes variation slower than a block; tod/measures/temporal_noise.h quantifies it.
+/// Noise of a recording: each pixel minus its mean over a block of successive frames. The subtraction removes scene,
+/// fixed pattern and drift. The noise is in the unit of the frames and scaled to the variance of single frames. If the
+/// noise is correlated in time, the subtraction also removes variation slower than a block;
+/// tod/measures/temporal_noise.h quantifies this loss.
 struct RecordedNoise {
   std::vector<cv::Mat1f> frames;
   std::vector<int> block_of_frame;
   int blocks = 0;
-  /// Usable pixels as given to recorded_noise(). If none were given, 0 marks pixels where the scene moved: their
-  /// temporal noise exceeds twice that of the median pixel.
+  /// Usable pixels as given to recorded_noise(). If no pixels were given, 0 marks pixels where the scene moved: their
+  /// temporal noise exceeds twice the noise of the median pixel.
   cv::Mat1b usable;
   double usable_share = 0;    ///< share of usable pixels
   double temporal_noise = 0;  ///< standard deviation over usable pixels, within a block
@@ -34,9 +35,9 @@ struct RecordedNoise {
   ThreeDNoise components;
 };
 
-/// Uses blocks of `block_frames` frames (at least 2); incomplete blocks are ignored. `usable`: the pixels to use
-/// (TemporalNoise::usable); empty: the function determines them. Errors: `invalid_input` (fewer frames than a block,
-/// frames of different sizes, no noise).
+/// Returns the noise of a recording, computed in blocks of `block_frames` frames (at least 2). Incomplete blocks are
+/// ignored. `usable`: the pixels to use (TemporalNoise::usable); empty: the function determines the pixels. Errors:
+/// `invalid_input` (fewer frames than a block, frames of different sizes, no noise).
 [[nodiscard]] Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int block_frames,
                                                    const cv::Mat1b& usable = {});
 
@@ -45,7 +46,7 @@ struct RecordedNoise {
 
 /// Options of the study.
 struct RealNoiseOptions {
-  std::vector<double> contrast_over_noise{1.6, 3.3, 8, 28};  ///< 3.3: 0.23 K at a NETD of 0.07 K
+  std::vector<double> contrast_over_noise{1.6, 3.3, 8, 28};  ///< contrasts over the noise; 3.3 is 0.23 K at 0.07 K NETD
   /// Noise of a whole frame divided by the noise of successive frames (TemporalNoise::whole_to_successive). It
   /// quantifies how noise that is correlated in time affects the observer.
   double whole_to_successive = 1;
@@ -58,20 +59,20 @@ struct RealNoiseOptions {
 /// 75 % size with its standard error.
 struct SizeEstimate {
   double s75_pitch = 0;
-  double se_ln = 0;  ///< jackknife over the blocks
+  double se_ln = 0;  ///< standard error of ln S75, by a jackknife over the blocks
 };
 
 /// Result at one contrast.
 struct NoiseAcuity {
   double contrast_over_noise = 0;
   SizeEstimate real, white;
-  double acuity_ratio = 0;  ///< acuity with real noise / acuity with white noise of the same standard deviation
-  Interval ratio_ci95;      ///< Student's t with blocks - 1 degrees of freedom
-  /// Standard deviation of the noise in the differences of the templates, relative to white noise of the same strength:
-  /// the part that affects the observer's decisions. Below 1 the noise has less effect than white noise of the same
-  /// NETD.
+  double acuity_ratio = 0;  ///< acuity with real noise over acuity with white noise of the same standard deviation
+  Interval ratio_ci95;      ///< 95 % interval of the ratio, by Student's t with blocks - 1 degrees of freedom
+  /// Standard deviation of the noise in the differences of the templates, relative to white noise of the same strength.
+  /// Only this part of the noise affects the observer's decisions. If the ratio is below 1, the noise has less effect
+  /// than white noise of the same NETD.
   double template_noise_ratio = 1;
-  /// Ratio of acuities predicted for white noise of template_noise_ratio times the strength.
+  /// Ratio of acuities that is predicted for white noise whose strength is multiplied by template_noise_ratio.
   double predicted_ratio = 1;
   /// Acuity with white noise of the strength of a whole frame, divided by the acuity with white noise of the strength
   /// of successive frames. Contrasts are in units of the noise of successive frames. Empty: there is no threshold with

@@ -39,7 +39,7 @@ struct ScenePicturesTask {
 /// One stage. All stages of a task show the same field.
 struct SceneStage {
   std::string name;         ///< name of its files: "1-scene"
-  std::string title, note;  ///< for people
+  std::string title, note;  ///< title and remark for people
   cv::Mat1f kelvin;         ///< equivalent kelvin above the background
   double pixels_per_pitch = 1;
 };
@@ -82,10 +82,10 @@ struct ScenePictures {
   std::optional<TurbulenceSeen> turbulence;  ///< empty if there is no turbulence
 };
 
-/// Renders the stages. Pictures 1 to 3 are finer than the detectors, 4 and 5 have one pixel per sample, the later ones
-/// eight per sample and axis. The effects that are needed at the contrast of the target are simulated, or all effects
-/// if no size has a threshold at this contrast. Errors: `invalid_input` (a range beyond the table of the air),
-/// `not_identifiable` (no contrast behind the stages), those of scene_signal_k() and of the stages.
+/// Renders the stages. Pictures 1 to 3 are finer than the detectors, 4 and 5 have one pixel per sample, and later
+/// pictures have eight pixels per sample and axis. The effects that are needed at the contrast of the target are
+/// simulated, or all effects if no size has a threshold at this contrast. Errors: `invalid_input` (a range beyond the
+/// table of the air), `not_identifiable` (no contrast behind the stages), those of scene_signal_k() and of the stages.
 [[nodiscard]] Result<ScenePictures> scene_pictures(const ScenePicturesTask& task);
 
 /// Returns a picture of 8 bits, black at low and white at high, enlarged by an integer factor until the longer side has

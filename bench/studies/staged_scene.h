@@ -20,8 +20,8 @@ struct StagedFrame {
 };
 
 /// Passes the counts of successive frames through newly created stages and returns the last frame. `signals`: signals
-/// of the frames in kelvin above the background; the last one belongs to the returned frame, whose noise has index 0.
-/// The gain is computed from the last frame with the scene at rest and without the scene, both with the same noise.
+/// of the frames in kelvin above the background; the last signal belongs to the returned frame, whose noise has index
+/// 0. The gain is computed from the last frame with the scene at rest and without the scene, both with the same noise.
 /// Errors: those of the stages; `not_identifiable` (no contrast behind the stages).
 [[nodiscard]] Result<StagedFrame> behind_stages(const SensorModel& model,
                                                 const std::function<std::vector<std::unique_ptr<ChainStage>>()>& stages,

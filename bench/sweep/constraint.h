@@ -17,7 +17,7 @@ namespace todbench {
 /// (`and` binds closer). Immutable, thread-safe.
 class Constraint {
  public:
-  /// Parses a condition. Errors: `invalid_input` in one sentence with the position in the text.
+  /// Parses a condition. Errors: `invalid_input` with the position in the text.
   [[nodiscard]] static Result<Constraint> parse(std::string_view text);
   /// Returns the text of the condition.
   [[nodiscard]] const std::string& text() const { return text_; }

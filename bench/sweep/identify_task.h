@@ -19,7 +19,7 @@ namespace todbench {
 [[nodiscard]] bool is_identification_key(std::string_view key);
 
 /// Returns the study of a task with the sensor, observer, display, accuracy and motion of a plan. If two parameters
-/// have the same key, the later one is used. Errors: `invalid_input` with the key; those of the loaders.
+/// have the same key, the later parameter is used. Errors: `invalid_input` with the key; those of the loaders.
 [[nodiscard]] Result<IdentificationStudyTask> identification_task(const std::vector<SweepParameter>& parameters,
                                                                   const std::filesystem::path& folder,
                                                                   const LoadedPlan& plan, std::stop_token stop);

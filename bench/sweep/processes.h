@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Execution of tasks in parallel processes, so that a crashed or killed task does not affect the others.
+// Execution of tasks in parallel processes, so that a crashed or killed task does not affect other tasks.
 #pragma once
 
 #include <cstddef>

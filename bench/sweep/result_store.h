@@ -44,8 +44,8 @@ struct TaskOutcome {
   std::optional<Error> error{};
 };
 /// Runs a task unless its result exists. A result is written to a temporary file and renamed, so repeated calls are
-/// safe. A failure is stored as a file. Errors: `invalid_input` (same index, another hash); `interrupted`, which leaves
-/// no file.
+/// safe. A failure is stored as a file. Errors: `invalid_input` (same index, another hash); `interrupted` (no file is
+/// written).
 [[nodiscard]] TaskOutcome run_and_store(const RunnableSweep& runnable, std::size_t index, std::stop_token stop);
 
 }  // namespace todbench

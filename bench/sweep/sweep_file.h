@@ -55,8 +55,8 @@ struct SweepFile {
   std::size_t sample_count = 0;
   std::uint64_t sample_seed = 1;
   /// For a Sobol sample. If true, every draw contains two independent points A and B and, for each parameter, the point
-  /// A with this parameter taken from B. This gives total indices (Saltelli et al. 2010) with sample_count (ranges + 2)
-  /// combinations.
+  /// A with this parameter taken from B. Total indices (Saltelli et al. 2010) are then computed from sample_count
+  /// (ranges + 2) combinations.
   bool sample_total = false;
   std::size_t repeats = 1;
   std::vector<Constraint> where;
@@ -65,7 +65,7 @@ struct SweepFile {
 };
 
 /// Reads [base], [grid], [zip], [sample], [repeat], name, seed, paired, kind, where. Keys of [grid] keep the order of
-/// the file; { from, to, steps } is a list. Errors: `invalid_input` "FILE:LINE: ..." in one sentence.
+/// the file; { from, to, steps } is a list. Errors: `invalid_input` "FILE:LINE: ...".
 [[nodiscard]] Result<SweepFile> read_sweep(const std::filesystem::path& file);
 /// Parses the text of a sweep file. `file`: name of the text in messages.
 [[nodiscard]] Result<SweepFile> parse_sweep(std::string_view text, const std::filesystem::path& file);

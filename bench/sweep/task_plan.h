@@ -20,10 +20,10 @@ struct RunnableSweep {
   LoadedPlan initial;                ///< base plan without parameters
   std::vector<SweepParameter> base;  ///< parameters of [base], except the plan
 };
-/// Loads a sweep. Allowed keys are keys of a plan by their path ("simulation.accuracy") or by the option of `todbench
-/// simulate` ("delta_t_k", "observer", "sensor"), keys of a sensor ("netd_k"), and "plan" in [base] with a name or a
-/// file. Without a plan there is no unit under test, and the distance of the plates is chosen for each sensor. This
-/// function checks all values of all keys. Errors: `invalid_input` in one sentence.
+/// Loads a sweep. A sweep can set the keys of a plan, by path ("simulation.accuracy") or by the option of `todbench
+/// simulate` ("delta_t_k", "observer", "sensor"), and the keys of a sensor ("netd_k"). In [base] it can also set "plan"
+/// to a name or a file. Without a plan there is no unit under test, and the distance of the plates is chosen for each
+/// sensor. This function checks all values of all keys. Errors: `invalid_input`.
 [[nodiscard]] Result<RunnableSweep> load_sweep(const std::filesystem::path& file);
 
 /// Returns the plan of a task, including its seed. Errors: `invalid_input` for values that do not fit together.

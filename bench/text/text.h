@@ -32,8 +32,7 @@ namespace todbench {
 /// Returns the permitted words for a message: "one of 'a', 'b'"; "'a'" for a single one.
 [[nodiscard]] std::string one_of(std::span<const std::string> words);
 
-/// Reads a whole configuration or input file. Errors: `invalid_input`, one sentence (unreadable, or larger than 512
-/// MiB).
+/// Reads a whole configuration or input file. Errors: `invalid_input` (unreadable, or larger than 512 MiB).
 [[nodiscard]] Result<std::string> read_text_file(const std::filesystem::path& file);
 
 /// Splits one RFC 4180 record without its line end. Errors: `invalid_input` (misplaced quote).

@@ -15,7 +15,7 @@ namespace todbench {
 
 /// Element with its children.
 struct XmlElement {
-  std::string name;  ///< without the prefix of its namespace
+  std::string name;  ///< name without the prefix of its namespace
   std::string text;  ///< own text without the text of children, trimmed
   std::vector<std::pair<std::string, std::string>> attributes{};
   std::vector<XmlElement> children{};

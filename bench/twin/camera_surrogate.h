@@ -24,26 +24,26 @@ class CameraSurrogate {
   /// `responses`: result of simulated_responses() for the twin.
   CameraSurrogate(const LoadedPlan& loaded, const ExperimentInputs& inputs, std::map<std::string, double> responses);
 
-  /// Returns the response of the plate through the camera's own optics, if they differ from the twin's optics; for
+  /// Returns the response of the plate through the camera's own optics, if these differ from the twin's optics. Used as
   /// MeasurementOptions::learn_response. The test is chi-square with two degrees of freedom. Over all set-ups of the
   /// plan, a camera identical to its twin fails the test with a probability of 1 %.
   [[nodiscard]] std::map<std::string, double> learn(const SetUpPicture& found);
 
   /// Returns the responses by which contrasts are divided.
   [[nodiscard]] const std::map<std::string, double>& responses() const { return responses_; }
-  /// Returns the inputs with the surrogate in place of the twin. Empty if the frames of the camera agree with the twin,
-  /// whose function then remains in use. Noise counts as different if the difference is significant in a t test at 1 %
-  /// and would change a threshold by more than 0.05 %: NETD by 5 %, rows, columns and fixed pattern by 3 % of the
-  /// variance of a pixel.
+  /// Returns the inputs with the surrogate in place of the twin. Empty if the frames of the camera agree with the twin;
+  /// the function of the twin then remains in use. Noise counts as different if the difference is significant in a t
+  /// test at 1 % and would change a threshold by more than 0.05 %: NETD by 5 %, rows, columns and fixed pattern by 3 %
+  /// of the variance of a pixel.
   [[nodiscard]] std::optional<ExperimentInputs> lent() const;
   /// Returns whether the pictures of the camera contradict the optical model of the twin for all its parameters, or
-  /// whether the estimated optics do not give a valid sensor.
+  /// whether no valid sensor has the estimated optics.
   [[nodiscard]] bool refused() const;
   /// Returns whether the frames could not be compared with the twin's optics: contrasts in grey levels, a program in
   /// the twin, or no triangle large enough.
   [[nodiscard]] bool unseen() const { return !possible_ || !fit_.result(); }
-  /// Returns the light that the camera spreads round the triangles in addition to its twin; empty if the frames show
-  /// none.
+  /// Returns the light that the camera spreads round the triangles in addition to its twin; empty if the frames contain
+  /// no such light.
   [[nodiscard]] std::optional<CameraHalo> halo() const;
   /// Returns whether the frames do not confirm the function and the response: refused(), unseen() or a halo().
   [[nodiscard]] bool unconfirmed() const { return refused() || unseen() || halo(); }

@@ -27,7 +27,7 @@ struct ExperimentInputs {
   SensorSpec sensor;                      ///< as planned: parameters of skipped effects have their neutral values
   double stated_noise_counts = 0;         ///< temporal noise of the sensor with all effects, in counts
   SensorPlan effects;                     ///< effects that the scene needs within the tolerance, with reasons
-  std::vector<ContrastOutlook> outlooks;  ///< for each contrast with a threshold
+  std::vector<ContrastOutlook> outlooks;  ///< prediction for each contrast with a threshold
   SceneMotion motion{};
   std::vector<std::string> warnings;  ///< warnings of the planner, one sentence each
   bool identifiable = true;           ///< at least one contrast has a threshold

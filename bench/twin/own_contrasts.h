@@ -16,7 +16,7 @@
 namespace todbench {
 
 /// Returns the function of the simulated sensor over size and contrast, for the contrasts of the plan and a quarter
-/// beyond both ends. One table takes about a second. Errors: those of proportion_curves().
+/// beyond the lowest and the highest contrast. One table takes about a second. Errors: those of proportion_curves().
 [[nodiscard]] Result<ContrastSurface> contrast_surface(const Plan& plan, const ExperimentInputs& inputs,
                                                        std::stop_token stop);
 
@@ -31,9 +31,9 @@ struct RampOutcome {
   std::vector<AdequacyFinding> findings{};  ///< `ramp_direction`, `contrast_lag`
 };
 
-/// Takes threshold and interval of the points of a curve from the fit over all contrasts of a ramp, and adds the
-/// continuous curve. `run`: with the observed contrasts. `curve`: from the answers of at_set_contrasts(). Errors: those
-/// of RampFit::of().
+/// Sets threshold and interval of the points of a curve to the values of the fit over all contrasts of a ramp, and adds
+/// the continuous curve. `run`: with the observed contrasts. `curve`: from the answers of at_set_contrasts(). Errors:
+/// those of RampFit::of().
 [[nodiscard]] Result<RampOutcome> take_ramp(TodCurve& curve, const MeasurementResult& run,
                                             const ContrastSurface& surface, const Plan& plan);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Comparison of a camera with its twin by the phases that both observed.
+// Comparison of a camera with its twin by the phases that camera and twin both observed.
 #pragma once
 
 #include <functional>
@@ -59,9 +59,9 @@ struct Pairs {
   Comparison ratios;  ///< only contrast, margin and paired ratios of its points are set
   PairedOutcome said;
 };
-/// Computes the pairs on its own thread while the camera's physical measures are taken and the twin makes its own
-/// trials; null if the plan requests none. `camera_of` is called on that thread and may wait for its curve. The plan,
-/// the inputs and the objects that `camera_of` refers to outlive the task.
+/// Computes the pairs on its own thread while the physical measures of the camera and the trials of the twin are made;
+/// null if the plan requests none. `camera_of` is called on that thread and may wait for its curve. The plan, the
+/// inputs and the objects that `camera_of` refers to outlive the task.
 [[nodiscard]] std::unique_ptr<BackgroundTask<Pairs>> pairs_in_background(
     std::function<PairedCamera(std::stop_token)> camera_of, const Plan& plan, const ExperimentInputs& inputs);
 

@@ -19,7 +19,8 @@ struct SimulatedSetUp {
   MeasurementOptions options;
   OpenedBench bench;
   std::unique_ptr<TrialSchedule> schedule;
-  std::map<double, ProportionTable> functions{};  ///< for the stopping rule of an adaptive schedule (stopping_tables())
+  std::map<double, ProportionTable> functions{};  ///< functions for the stopping rule of an adaptive schedule
+                                                  ///< (stopping_tables())
 };
 
 /// Creates the set-up. `shown_delta_t_k` and `source`: as for simulated_bench(). `responses`: result of

@@ -13,7 +13,7 @@ struct SpectralBand {
   double low_um = 7.5, high_um = 13;
   bool operator==(const SpectralBand&) const = default;
 };
-/// Checks the limits. Errors: `invalid_input` with one sentence.
+/// Checks the limits. Errors: `invalid_input`.
 [[nodiscard]] Result<void> validate(const SpectralBand& band);
 
 /// Returns Planck's law integrated over the band, in W/(m2 sr), from the series of the integral; accurate to 1e-14

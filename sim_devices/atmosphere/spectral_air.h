@@ -18,7 +18,7 @@ struct SpectralExtinction {
   double extinction_per_km = 0;  ///< >= 0
 };
 /// Returns the band transmittance at every range, weighted with dL/dT (power) of a black body, by the trapezoid rule
-/// over the listed wavelengths. Errors: `invalid_input` in one sentence.
+/// over the listed wavelengths. Errors: `invalid_input`.
 [[nodiscard]] Result<Transmittance> air_of_spectrum(std::span<const SpectralExtinction> spectrum, double temperature_k);
 
 /// One run of a tape7 file.

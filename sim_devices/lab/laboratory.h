@@ -29,7 +29,7 @@ struct LaboratoryOptions {
   SensorSpec sensor;
   SensorPlan plan;  ///< effects of the camera; effects of motion apply while the stage runs
   Accuracy accuracy;
-  std::vector<TargetPlate> plates;  ///< in the slots of the stage, in identity mounting
+  std::vector<TargetPlate> plates;  ///< plates in the slots of the stage, in identity mounting
   double distance_m = 2;
   cv::Point2d centre_px{0.3, -0.2};  ///< middle of the plate in the picture, from the middle of the picture
   double rotation_deg = 0.4;         ///< rotation of the plate about the line of sight

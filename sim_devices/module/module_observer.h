@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Observer that takes its scores from a program of the user.
+// Observer that receives its scores from a program of the user.
 #pragma once
 
 #include <functional>

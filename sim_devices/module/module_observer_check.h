@@ -13,10 +13,10 @@ struct JudgedSize {
   double size_samples = 0;  ///< square root of area
   int samples_per_pitch = 1;
   int window_samples = 0;    ///< side of the patch
-  int asked = 0, right = 0;  ///< decisions, and correct ones
+  int asked = 0, right = 0;  ///< decisions, and correct decisions
 };
 
-/// Properties of an observer program that fulfils the contract. None of them is a fault.
+/// Properties of an observer program that fulfils the contract. None of these properties is a fault.
 struct ObserverModuleReport {
   std::vector<JudgedSize> sizes;
   bool network_cut = false;  ///< the program could not reach any other computer
@@ -26,7 +26,7 @@ struct ObserverModuleReport {
 };
 
 /// Starts the program several times and sends it patches of targets without sensor noise: every alternative at nine
-/// places within a sample, with the internal noise of `spec`. Errors: those of the module, and `integrity` if two
+/// positions within a sample, with the internal noise of `spec`. Errors: those of the module, and `integrity` if two
 /// processes score the same patches in the same order differently.
 [[nodiscard]] Result<ObserverModuleReport> check_observer(const TemplateObserverSpec& spec,
                                                           const Alternatives& alternatives, const ModulePlan& module);

@@ -30,7 +30,7 @@ inline constexpr std::array all_module_places{ModulePlace::picture, ModulePlace:
 /// [[module]] of plans and sensor files. `module_ranges` states the ranges.
 struct ModulePlan {
   ModulePlace place = ModulePlace::picture;
-  std::string command;                            ///< for a shell, run in the folder of the caller
+  std::string command;                            ///< command for a shell, run in the folder of the caller
   std::string version;                            ///< command whose first line of output is recorded; empty: none
   std::map<std::string, std::string> parameters;  ///< sent in the header
   int limit_ms = 5000;                            ///< time limit for one output, in ms
@@ -40,7 +40,7 @@ struct ModulePlan {
   int settle_frames = 0;                          ///< frames after which earlier scenes no longer affect the output
   bool operator==(const ModulePlan&) const = default;
 };
-/// Largest values. The smallest value of limit_ms is 1, and of the others 0.
+/// Largest values. The smallest value of limit_ms is 1; the smallest value of the other members is 0.
 struct ModuleRanges {
   int limit_ms = 600000, memory_mib = 1 << 20, restart_frames = 1000000000, settle_frames = 10000;
 };

@@ -18,7 +18,7 @@
 
 namespace todbench {
 
-/// Access of a module to other computers, and to this one over its network.
+/// Access of a module to other computers, and to this computer over its network.
 enum class ModuleNetwork {
   cut,  ///< own network and queues, no other sockets (bubblewrap); as `ours` if bubblewrap cannot run
   ours,
@@ -28,9 +28,9 @@ enum class ModuleNetwork {
 
 /// Command and limits of a module.
 struct ModuleOptions {
-  std::string command{};      ///< for a shell
+  std::string command{};      ///< command for a shell
   std::string header = "{}";  ///< JSON that is sent first, as a byte array
-  /// For one output; for the first output this includes the start of the process.
+  /// Time limit for one output. For the first output the limit includes the start of the process.
   std::chrono::milliseconds limit{5000};
   std::size_t memory_limit_mib = 0;  ///< limit of address space for each process that the module starts; 0: no limit
   ModuleNetwork network = ModuleNetwork::cut;
@@ -38,7 +38,7 @@ struct ModuleOptions {
 };
 
 /// Returns the first line (at most 256 bytes) that the command writes to its standard output or error within `limit`.
-/// It runs with empty standard input under the limits of a module. Empty if there is none.
+/// The command runs with empty standard input under the limits of a module. Empty if there is none.
 [[nodiscard]] std::string first_line_of_module(const ModuleOptions& options);
 
 /// Running module: one .npy array is written to its standard input, and one array of the same shape is read from its
@@ -79,7 +79,7 @@ class ModuleProcess {
   std::optional<int> exit_code_;
   Descriptor in_, out_, err_;  ///< our ends of its standard streams
   std::string to_write_, read_, errors_, error_line_;
-  std::vector<char> buffer_ = std::vector<char>(1 << 20);  ///< for reading
+  std::vector<char> buffer_ = std::vector<char>(1 << 20);  ///< buffer for reading
 };
 
 }  // namespace todbench

@@ -43,8 +43,8 @@ struct MessageRead {
   std::optional<NpyMessage> message;  ///< empty: more bytes are needed
   std::size_t bytes = 0;              ///< size of the message
 };
-/// Reads the first message of a stream. Errors: `integrity` in one sentence (no .npy array, a type other than <f4, <f8,
-/// |u1, |i1, <u2, <i2, <u4, <i4, |b1, column order, more than `most_values`).
+/// Reads the first message of a stream. Errors: `integrity` (no .npy array, a type other than <f4, <f8, |u1, |i1, <u2,
+/// <i2, <u4, <i4, |b1, column order, more than `most_values`).
 [[nodiscard]] Result<MessageRead> read_message(std::string_view stream, std::size_t most_values);
 
 }  // namespace todbench

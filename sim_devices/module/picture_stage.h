@@ -23,23 +23,24 @@ class ChainStage {
   ChainStage(const ChainStage&) = delete;
   ChainStage& operator=(const ChainStage&) = delete;
   /// Returns the processed picture, with samples_per_pixel() times the size of `picture` and finite numbers. Errors:
-  /// those of ModuleProcess; built-in stages have none.
+  /// those of ModuleProcess; built-in stages have no errors.
   [[nodiscard]] virtual Result<cv::Mat1f> process(const cv::Mat1f& picture) = 0;
-  /// Returns the number of pictures after which less than 0.1 % of an earlier scene is left.
+  /// Returns the number of pictures after which an earlier scene contributes less than 0.1 %.
   [[nodiscard]] virtual int memory_frames() const { return 0; }
   /// Returns the number of samples of the result per sample of the picture and axis.
   [[nodiscard]] virtual int samples_per_pixel() const { return 1; }
   /// Returns the position of sample (0, 0) of the last result, in samples of the picture.
   [[nodiscard]] virtual cv::Point2d first_px() const { return {0, 0}; }
-  /// Returns the displacement that the stage assumes for the last picture, in its samples; empty if it assumes none.
+  /// Returns the displacement that the stage assumes for the last picture, in its samples; empty if it assumes no
+  /// displacement.
   [[nodiscard]] virtual std::optional<cv::Point2d> believed_px() const { return {}; }
 };
 
-/// Returns the recursive filter y_n = share x_n + (1 - share) y_(n-1), which leaves the first picture unchanged. The
+/// Returns the recursive filter y_n = share x_n + (1 - share) y_(n-1), which does not change the first picture. The
 /// variance of white noise is reduced to share / (2 - share). Precondition: 0 < share <= 1.
 [[nodiscard]] std::unique_ptr<ChainStage> recursive_filter(double share);
-/// Returns the filter x + amount (x - mean of the 3 x 3 neighbourhood), with edges repeated. An amount of 0 leaves the
-/// picture unchanged.
+/// Returns the filter x + amount (x - mean of the 3 x 3 neighbourhood), with edges repeated. An amount of 0 does not
+/// change the picture.
 [[nodiscard]] std::unique_ptr<ChainStage> sharpening(double amount);
 /// Returns the sum over the 3 x 3 neighbourhood, weighted by the kernel (rows first), with edges repeated.
 [[nodiscard]] std::unique_ptr<ChainStage> kernel_filter(const std::array<double, 9>& kernel);

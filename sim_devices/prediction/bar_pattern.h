@@ -13,7 +13,7 @@ namespace todbench {
 /// All patterns fill the same square, of side 3.5 / f.
 enum class BarPattern {
   four_bars,  ///< bars of width 1 / (2 f), spaces of the same width, aspect ratio 7 : 1
-  five_bars,  ///< in the same square, at 9/7 of the frequency (Bijl and Valeton)
+  five_bars,  ///< five bars in the same square, at 9/7 of the frequency (Bijl and Valeton)
   uniform     ///< the square at 4/7 of the contrast, which gives the same mean
 };
 
@@ -23,7 +23,7 @@ enum class BarPattern {
 
 /// Returns sums over all samples of the squared difference between four bars and the alternative, behind `transfer`
 /// (cycles per pitch), at contrast 1 and one sample per pitch. One sum for each of phases x phases lattices at (i +
-/// 1/2) / phases - 1/2. Exact except for the cut at `band_per_pitch`.
+/// 1/2) / phases - 1/2. Exact except for the truncation of the band at `band_per_pitch`.
 [[nodiscard]] std::vector<double> bar_energies(double frequency_per_pitch, BarPattern alternative,
                                                const TransferFunction& transfer, double band_per_pitch, int phases);
 

@@ -13,7 +13,8 @@ namespace todbench {
 
 /// Halo found in the pictures.
 struct CameraHalo {
-  double share = 0;     ///< share of the light of a triangle, in addition to the halo of the twin; negative: less
+  double share = 0;     ///< share of the light of a triangle, in excess of the twin's halo; negative: less than the
+                        ///< twin
   double share_se = 0;  ///< standard error of `share` for a normal halo of this width
   double sigma_px = 0;  ///< width that fits the pictures best
 };

@@ -26,7 +26,7 @@ struct OpticsPicture {
 /// Optics estimated from the pictures, relative to a sensor file.
 struct CameraOptics {
   double aberration_sigma_pitch = 0;
-  double f_number_ratio = 1;  ///< relative to the sensor file
+  double f_number_ratio = 1;  ///< f-number of the camera divided by the f-number of the sensor file
   double aberration_se_pitch = 0, f_number_ratio_se = 0;
   /// Chi-square at the optics of the sensor file minus its minimum. For a camera equal to the sensor file it has two
   /// degrees of freedom.

@@ -24,7 +24,7 @@ struct CameraTrialOptions {
   double delta_t_k = 0;             ///< contrast of every triangle; not 0
   std::vector<double> sizes_pitch;  ///< each is shown four times per picture, once in each orientation
   int presentations = 24;           ///< pictures, each with its own sampling phase; at least 2
-  int frames = 16;                  ///< per super-resolved picture, displaced against each other by up to half a pitch
+  int frames = 16;                  ///< frames of a super-resolved picture, with displacements of up to half a pitch
   FrameDisplacements displacements = FrameDisplacements::anywhere;
   int graded_draws = 32;  ///< draws of the observer's internal noise for the probabilities of one picture
   Accuracy accuracy;
@@ -47,7 +47,7 @@ struct CameraTrials {
 /// Answers of the observers (one entry each) and statistics of the registration.
 struct CameraTrialRecord {
   std::vector<CameraTrials> observers;
-  double frames_registered = 0;    ///< per super-resolved picture; the others could not be registered
+  double frames_registered = 0;    ///< mean number of registered frames of a super-resolved picture
   double registration_rms_px = 0;  ///< estimated minus true displacement, per axis
   double frames_per_sample = 0;    ///< averaged in a sample of the super-resolved picture
   double placement_rms_px = 0;     ///< distance of averaged samples from the grid, per axis

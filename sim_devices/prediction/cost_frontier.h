@@ -71,7 +71,7 @@ struct CostChoice {
 /// Thresholds from trials, computed by the caller.
 struct CostTrials {
   std::string setting;       ///< number of trials: "1920"
-  double relative_cost = 1;  ///< relative to the other entries
+  double relative_cost = 1;  ///< cost relative to the other entries
   std::function<Result<std::vector<ThresholdEstimate>>(std::stop_token)> measure;
 };
 

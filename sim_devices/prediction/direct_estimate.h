@@ -19,14 +19,14 @@ namespace todbench {
 /// Estimate at one contrast.
 struct DirectPoint {
   double delta_t_k = 0;
-  /// Contrast that the observer divides by: the set contrast, or the reading of the camera if its counts are too coarse
-  /// or too few.
+  /// Contrast by which the observer divides: the set contrast, or the reading of the camera if its counts are too
+  /// coarse or too few.
   double seen_delta_t_k = 0;
-  double s75_pitch = 0;  ///< in detector pitches
+  double s75_pitch = 0;  ///< 75 % size in detector pitches
   double standard_error_pitch = 0;
   std::vector<double> sizes_pitch;
   std::vector<double> proportion_correct;
-  int noise_draws = 0;  ///< per size
+  int noise_draws = 0;  ///< draws of noise for each size
 };
 
 /// Options of the estimate.
@@ -47,7 +47,7 @@ struct DirectEstimateOptions {
 
 /// Returns one point per contrast (kelvin, > 0). Noise is drawn once per size and shared by phases and contrasts. If a
 /// count exceeds the noise (rounds_coarsely()), or if the contrast reaches the lowest or highest count, the counts of
-/// every pixel are simulated with one projection for each draw and phase, which takes up to sixteen times as long. If
+/// every pixel are simulated, with one projection for each draw and phase. This takes up to sixteen times as long. If
 /// the accuracy requires a standard error, draws are added until it is met. Errors: `invalid_input` (the camera's
 /// reading of a contrast is 0; no size between 0.2 and 40 pitches brackets 75 %, so the contrast has no threshold; the
 /// required standard error needs more draws than Accuracy::max_noise_draws; the message states the reachable standard

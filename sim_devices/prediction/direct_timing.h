@@ -7,7 +7,7 @@
 
 namespace todbench {
 
-/// Returns the processor time of this thread so far, in seconds. Differences exclude the time of other programs.
+/// Returns the processor time that this thread has used, in seconds. Differences exclude the time of other programs.
 [[nodiscard]] double thread_seconds();
 
 /// Returns the processor time in seconds of direct_estimate() for one contrast with a 75 % size near `s75_pitch` and

@@ -23,7 +23,7 @@ struct DynamicTrialOptions {
   std::vector<double> sizes_pitch;    ///< each is shown four times per picture, once in each orientation
   std::vector<double> speeds_mrad_s;  ///< along x, at least 0; passes alternate between right and left
   int passes = 24;                    ///< each with its own sampling phase; at least 2
-  int frames = 8;                     ///< per pass, at least 1
+  int frames = 8;                     ///< frames of a pass, at least 1
   Accuracy accuracy;
   std::uint64_t seed = 1;
   /// Stages behind the camera, made anew for every pass; empty: none. Before the first frame of a pass they receive as
@@ -42,9 +42,9 @@ struct DynamicTrials {
 /// Runs the trials. Frames are the counts of the simulated camera. Frame k of a pass has the same random numbers at
 /// every speed, and each pass starts in the same sampling phase, so ratios between speeds are paired. The picture has
 /// no lag, because the transfer functions of time constant and exposure have their mean lag removed. A triangle is
-/// judged at its place when its rows are read. Internal noise is drawn once per decision for any number of frames.
-/// Errors: `invalid_input` (options that cannot be met; a sensor with modules, microscan or super-resolution),
-/// `interrupted`, errors of the stages.
+/// judged at its position at the time at which its rows are read. Internal noise is drawn once per decision for any
+/// number of frames. Errors: `invalid_input` (options that cannot be met; a sensor with modules, microscan or
+/// super-resolution), `interrupted`, errors of the stages.
 [[nodiscard]] Result<std::vector<DynamicTrials>> dynamic_trials(const SensorSpec& sensor, TemplateObserver& observer,
                                                                 const DynamicTrialOptions& options);
 

@@ -51,7 +51,7 @@ struct EffectPlan {
 /// Results of the criteria for a scene, independent of the tolerance: the part of the planning that takes time.
 struct SceneSurvey {
   SensorPlan everything;                              ///< every effect that is not neutral
-  std::vector<std::optional<double>> change_percent;  ///< for each decision: bound on the change; empty: no criterion
+  std::vector<std::optional<double>> change_percent;  ///< bound on the change for each decision; empty: no criterion
   std::vector<ContrastOutlook> outlooks;              ///< for each contrast with a threshold
   std::vector<std::string> warnings;                  ///< a sentence for each contrast without threshold
   std::string no_criterion;                           ///< reason if no criterion holds in this scene; otherwise empty

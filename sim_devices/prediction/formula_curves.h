@@ -16,7 +16,7 @@ struct FormulaConditions {
   double eye_integration_s = 0.1;
   EyeConditions eye{};
   double sample_at_eye_mrad = 1;  ///< angle of a displayed sample for the viewer; sets the magnification
-  double scene_contrast_k = 10;   ///< contrast that gives the display its mean luminance; sets the gain
+  double scene_contrast_k = 10;   ///< scene contrast for the mean luminance of the display; sets the gain
   double alpha_root_hz = 169.6;   ///< calibration of noise in the TTP model of 2004
 };
 

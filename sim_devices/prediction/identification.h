@@ -33,7 +33,7 @@ struct IdentificationRange {
 enum class TemplateKnowledge {
   behind_camera,          ///< pictures behind this camera in this motion, as for people who learned from them
   behind_camera_at_rest,  ///< pictures behind this camera without motion
-  ideal                   ///< ideal pictures only: blur then makes targets resemble other targets
+  ideal                   ///< ideal pictures without blur; a blurred target can then resemble another target
 };
 /// Differences between the targets.
 enum class TargetCues {
@@ -55,7 +55,7 @@ struct IdentificationTask {
   std::vector<IdentificationRange> ranges;                         ///< ranges with their air
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;  ///< pictures that the observer uses as templates
   TargetCues cues = TargetCues::all;                               ///< differences between the targets
-  int decisions = 2000;                                            ///< per target and range, all aspects together
+  int decisions = 2000;                                            ///< decisions per target and range, over all aspects
   /// Motion of the targets in the picture: they move, or the camera turns. The effects must be planned for it.
   SceneMotion motion{};
   /// Use of the frames of a pass, as for a moving triangle; internal noise is drawn once per decision.
@@ -65,7 +65,7 @@ struct IdentificationTask {
   /// pass they receive as many frames of the same motion as they store. Their lag is not removed.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   /// Largest distance, in samples, over which a picture influences a sample behind the stages; empty: the whole picture
-  /// does.
+  /// has an influence.
   std::optional<int> stage_reach_px{};
   /// Cn2 of the turbulence along the path of each range, instead of the sensor's Cn2; 0: as in the sensor. The plan
   /// must simulate turbulence. The templates of an observer with knowledge behind the camera include this air.
@@ -92,7 +92,7 @@ struct IdentificationPoint {
   std::vector<double> by_draw;
   /// Proportion correct of an observer with an eye, for the worst and the best values of its open parameters.
   std::optional<std::pair<double, double>> spread{};
-  std::optional<JudgedPictures> judged{};  ///< with stages
+  std::optional<JudgedPictures> judged{};  ///< contrast and noise behind the stages; empty without stages
   [[nodiscard]] double proportion() const;
   [[nodiscard]] double standard_error() const;
 };
@@ -101,7 +101,8 @@ struct IdentificationPoint {
 struct IdentificationEffort {
   double decisions = 0;      ///< all targets and ranges
   double largest_bytes = 0;  ///< memory of the templates of one range
-  double processor_s = 0;    ///< on one core with about 2 x 10^10 template samples a second, to a factor of two
+  double processor_s = 0;    ///< time on one core with about 2 x 10^10 template samples a second, within a factor of
+                             ///< two
 };
 /// Predicts the effort without computing. Errors: those of identify() about the targets and their size.
 [[nodiscard]] Result<IdentificationEffort> planned_effort(const IdentificationTask& task);
@@ -109,8 +110,9 @@ struct IdentificationEffort {
 /// Returns one point per range, in the same order. Every target in every aspect is shown with each draw of sensor and
 /// internal noise, in one of 16 sampling phases that change from draw to draw. The template observer sets the internal
 /// noise and the enlargement of the sensor's noise. The contrast is dT_RSS behind the air; for an observer with an eye
-/// it is converted to the luminance contrast of its display. A target in motion is judged at its true place, without
-/// the mean lag of time constant and exposure, and each row at its time, as in dynamic_trials().
+/// it is converted to the luminance contrast of its display. As in dynamic_trials(), a target in motion is judged at
+/// its true position, without the mean lag of time constant and exposure. Each row is judged at the time at which it is
+/// read.
 ///
 /// Stages receive rounded and clipped counts: of the window and its surround, or of the whole picture if a stage needs
 /// it. Internal noise is relative to the contrast of a view in the judged pictures, and the observer enlarges the noise

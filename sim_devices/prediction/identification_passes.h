@@ -23,11 +23,10 @@ namespace todbench {
 
 /// Returns the displacement of the target from frame to frame, in displayed samples.
 [[nodiscard]] cv::Point2d step_of_pass(const SensorSpec& spec, SceneMotion motion);
-/// Fails with `invalid_input` and one sentence for a motion or a sequence of frames that the experiment does not
-/// simulate.
+/// Fails with `invalid_input` for a motion or a sequence of frames that the experiment does not simulate.
 [[nodiscard]] Result<void> check_passes(const IdentificationTask& task);
 
-/// Window round the target in one frame. `phase`: place of the target from the middle of the window, in samples.
+/// Window round the target in one frame. `phase`: position of the target from the middle of the window, in samples.
 struct PassWindow {
   cv::Mat1f kelvin;
   cv::Point2d phase;
@@ -52,12 +51,12 @@ class IdentificationPasses {
   struct Signals {
     std::vector<cv::Mat1f> frames;    ///< including the frames before the pass that the stages store
     std::vector<cv::Point> corners;   ///< corner of each frame in the picture
-    std::vector<cv::Point2d> places;  ///< place of the target from the middle of the picture, in samples
+    std::vector<cv::Point2d> places;  ///< position of the target from the middle of the picture, in samples
   };
   /// Returns the frames of a pass of this view and sampling phase.
   [[nodiscard]] Signals signals(std::size_t target, std::size_t aspect, std::size_t phase) const;
   /// Returns the windows that the observer of the task judges, with the noise of a draw: the first frame, all frames,
-  /// or their mean at the place in the middle of the pass. In kelvin of the judged contrast. Errors: those of the
+  /// or their mean at the position in the middle of the pass. In kelvin of the judged contrast. Errors: those of the
   /// stages.
   [[nodiscard]] Result<std::vector<PassWindow>> windows(const Signals& signals, std::uint64_t draw) const;
 
@@ -104,8 +103,8 @@ class IdentificationPasses {
   mutable std::vector<std::unique_ptr<ChainStage>> without_memory_;  ///< kept from pass to pass
 };
 
-/// Returns the observer with a search that is half a sample wider, so that it can be centred on any true place between
-/// two samples.
+/// Returns the observer with a search that is half a sample wider, so that it can be centred on any true position
+/// between two samples.
 [[nodiscard]] TemplateObserverSpec searching_at_true_places(TemplateObserverSpec spec);
 /// Adds `share` times the scores `wide` of searching_at_true_places(), centred on `phase`, to the scores `own` of the
 /// observer's own search.

@@ -29,8 +29,8 @@ struct ModuleResponseOptions {
                                              const ModuleResponseOptions& options, std::stop_token stop = {});
 
 /// Returns the modulus of the transfer function of the whole image formation along x, at frequencies in cycles per
-/// pitch. It is the Fourier transform of the difference between pictures of a 1 K edge at places one scene sample
-/// apart, for four places within a pitch, averaged over all rows. Errors: those of ModuleSensor.
+/// pitch. It is the Fourier transform of the difference between pictures of a 1 K edge at positions one scene sample
+/// apart, for four positions within a pitch, averaged over all rows. Errors: those of ModuleSensor.
 [[nodiscard]] Result<std::vector<double>> module_transfer(ModuleSensor& sensor, const SensorSpec& spec,
                                                           const std::vector<double>& cycles_per_pitch);
 

@@ -12,7 +12,7 @@
 namespace todbench {
 
 /// Turns and mirrors noise after its projection. Turned noise has the same scores, exchanged between the templates. The
-/// four triangles at a square of places allow eight turns; a bank without this symmetry allows only the unchanged
+/// four triangles at a square of positions allow eight turns; a bank without this symmetry allows only the unchanged
 /// noise. One thread at a time.
 class ScoreTurns {
  public:
@@ -23,7 +23,7 @@ class ScoreTurns {
   [[nodiscard]] std::size_t size() const { return turns_.size(); }
   /// Sets the scores of a draw, which must outlive the calls of turned().
   void begin(std::span<const float> scores);
-  /// Writes the scores after turn number `turn` to `out`, which has as many elements.
+  /// Writes the scores after turn number `turn` to `out`, which has the same number of elements.
   void turned(std::size_t turn, std::span<float> out) const;
 
  private:

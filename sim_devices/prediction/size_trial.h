@@ -26,7 +26,7 @@ struct Proportion {
 
 /// Orientations that are shown.
 enum class ShownOrientations {
-  as_needed,  ///< one represents all four if no effect depends on direction
+  as_needed,  ///< one orientation represents all four if no effect depends on direction
   all,        ///< for draw-by-draw comparisons of conditions if some of them need all four
 };
 
@@ -35,10 +35,10 @@ enum class ShownOrientations {
 
 /// Conditions that all sizes and contrasts share.
 struct TrialConditions {
-  SensorSpec sensor;  ///< as planned
+  SensorSpec sensor;  ///< sensor as planned
   SceneMotion motion{};
   int samples_per_pitch = 1;
-  int phases_per_axis = 8;  ///< per pitch
+  int phases_per_axis = 8;  ///< sampling phases per pitch along each axis
   double search_step_samples = 0.125;
   ShownOrientations orientations = ShownOrientations::as_needed;
   bool by_pixels = false;  ///< required for pixel_proportion()
@@ -47,7 +47,7 @@ struct TrialConditions {
 /// One contrast of a camera whose counts are too coarse or too few for this contrast.
 struct PixelContrast {
   double scene_k = 0;     ///< true contrast, triangle minus surround
-  double seen_k = 0;      ///< reading of the camera, which the observer divides by
+  double seen_k = 0;      ///< reading of the camera, by which the observer divides
   double noise_k = 0;     ///< white noise of a sample before display and rounding, averaged over exposures
   double internal_k = 0;  ///< white noise of the observer
   double background_k = 300;
@@ -60,9 +60,9 @@ struct WhiteNoise {
 };
 
 /// Responses to the signal for every sampling phase, and projected noise. Each is computed once and shared by the
-/// contrasts. Every kind of noise has its own random numbers, so leaving one out does not change another. White noise
-/// that is turned, mirrored or negated is equally probable and has the scores of exchanged templates. Each draw is
-/// therefore used in all sixteen ways, each in a sixteenth of the phases. One thread at a time.
+/// contrasts. Every kind of noise has its own random numbers, so leaving out one kind does not change the numbers of
+/// another kind. White noise that is turned, mirrored or negated is equally probable and has the scores of exchanged
+/// templates. Each draw is therefore used in all sixteen ways, each in a sixteenth of the phases. One thread at a time.
 class SizeTrial {
  public:
   SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank> bank, double size_pitch,
@@ -72,8 +72,8 @@ class SizeTrial {
   [[nodiscard]] Proportion proportion(const WhiteNoise& white, double contrast_k, int draws);
 
   /// Returns the proportion correct with the counts of the sensor: every pixel of every trial is rounded and clipped.
-  /// Each draw is used in as many sampling phases as an axis has; the draws take all phases in turn. There are twice as
-  /// many phases as without rounding. Precondition: conditions.by_pixels.
+  /// Each draw is used in a number of sampling phases equal to the phases of one axis; successive draws use all phases
+  /// in turn. The number of phases is twice the number without rounding. Precondition: conditions.by_pixels.
   [[nodiscard]] Proportion pixel_proportion(const PixelContrast& contrast, int draws);
 
   /// Returns the proportion correct of an observer that knows the position (to half a search step) in white noise of sd
@@ -81,9 +81,9 @@ class SizeTrial {
   /// (known_position.h).
   [[nodiscard]] double known_position_proportion(double noise, int nodes, double eye_sd = 0) const;
 
-  /// Returns the variance of the score difference between the true template and another for numbers of sd 1 that
-  /// samples share as stated, divided by the variance for white noise of sd 1. The result is the largest ratio over the
-  /// alternatives, at the middle of the search.
+  /// Returns the variance of the score difference between the true template and another template, divided by its value
+  /// for white noise of sd 1. The noise has sd 1, and the samples that `shared` states have the same random number. The
+  /// result is the largest ratio over the alternatives, at the middle of the search.
   [[nodiscard]] double variance_ratio(SharedBy shared) const;
   /// Returns the standard deviation of the noise of the eye in a score, in units of the contrast. 0 without an eye.
   [[nodiscard]] double eye_sd(double contrast_k) const;
@@ -97,7 +97,7 @@ class SizeTrial {
   void add_eye_gram(double noise, double eye_sd, std::array<std::array<double, 4>, 4>& gram) const;
   struct Response {
     int truth = 0;              ///< the alternative that is shown
-    int place = 0;              ///< search place next to the true position
+    int place = 0;              ///< search position next to the true position
     std::vector<float> patch;   ///< samples; only with dead detectors or by_pixels
     std::vector<float> scores;  ///< scores of all templates
     cv::Mat1f before_display;   ///< samples with a margin for the display's taps; only with by_pixels
@@ -130,19 +130,19 @@ class SizeTrial {
   RandomStream stream_;
   std::vector<const stage::Noise*> coloured_stages_;  ///< coloured noise of this sensor
   std::vector<double> display_taps_;                  ///< empty for sample-and-hold
-  std::vector<double> white_taps_;   ///< for the sum of sensor's and internal noise; empty without display
+  std::vector<double> white_taps_;   ///< taps for the sum of the noise of sensor and observer; empty without display
   double white_ratio_ = -1;          ///< ratio to which white_taps_ belong
-  int places_of_dance_ = 1;          ///< per phase
-  std::vector<Response> responses_;  ///< by orientation shown, place of the dance and phase
+  int places_of_dance_ = 1;          ///< displacements by image dance for each phase
+  std::vector<Response> responses_;  ///< responses by shown orientation, position of the dance and phase
   ScoreTurns turns_;
   std::vector<std::vector<std::uint32_t>> phase_group_;  ///< responses by group; its phases lie evenly in the pixel
   std::vector<std::uint32_t> every_response_;
   std::vector<float> turned_;                          ///< scratch
-  std::vector<std::vector<float>> noise_;              ///< per draw: projected unit white noise
-  std::vector<std::vector<float>> eye_;                ///< per draw: scores of the eye's noise of sd 1
+  std::vector<std::vector<float>> noise_;              ///< projected white noise of sd 1, by draw
+  std::vector<std::vector<float>> eye_;                ///< scores of the noise of the eye with sd 1, by draw
   std::vector<float> mixed_;                           ///< scratch
-  std::vector<std::vector<float>> coloured_;           ///< per draw: projected coloured noise in kelvin
-  std::map<double, std::vector<double>> pixel_draws_;  ///< by contrast of the scene: proportion of each draw
+  std::vector<std::vector<float>> coloured_;           ///< projected coloured noise in kelvin, by draw
+  std::map<double, std::vector<double>> pixel_draws_;  ///< proportion correct of each draw, by contrast of the scene
 };
 
 }  // namespace todbench

@@ -49,10 +49,10 @@ struct VirtualMrtdTask {
 struct VirtualMrtdPoint {
   double frequency_per_mrad = 0;
   double frequency_over_nyquist = 0;
-  /// Contrast in kelvin for 75 % over all phases; empty if there is none up to highest_k.
+  /// Contrast in kelvin for 75 % over all phases; empty if no contrast up to highest_k is sufficient.
   std::optional<double> threshold_k;
-  /// threshold_k of an observer with an eye at both limits of its open parameters; empty if one of them gives no
-  /// threshold.
+  /// threshold_k of an observer with an eye at both limits of its open parameters; empty if there is no threshold at
+  /// one of these limits.
   std::optional<std::pair<double, double>> spread_k{};
   double relative_error = 0;  ///< standard error of threshold_k over threshold_k, from the draws
   /// Threshold at the best and at the worst of eight phases across the bars.

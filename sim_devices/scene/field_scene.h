@@ -16,78 +16,82 @@
 
 namespace todbench {
 
-/// Grey surface. It reflects the surround of the scene with 1 - emissivity.
+/// Grey surface. Its reflectance is 1 - emissivity.
 struct SceneRegion {
-  std::string name;
-  Polygon outline_m;  ///< x right, y down, in the plane perpendicular to the line of sight
-  double temperature_k = 300, emissivity = 1;
-  bool target = false;  ///< part of the target to be identified
+  std::string name;            ///< name in messages, "hull"
+  Polygon outline_m;           ///< corners in the plane perpendicular to the line of sight, x right, y down
+  double temperature_k = 300,  ///< surface temperature
+      emissivity = 1;          ///< emissivity of the surface, 0 to 1
+  bool target = false;         ///< true if the region belongs to the target to be identified
 };
 
-/// Calibrated picture, taken by a finer camera at a shorter range. Its middle is the origin of the scene.
+/// Calibrated picture, taken by a finer camera at a shorter range. The centre of the picture is the origin of the
+/// scene.
 struct ScenePicture {
-  cv::Mat1d kelvin;      ///< radiation temperatures
-  cv::Mat1b target;      ///< not 0: part of the target; empty: no target
-  double element_m = 0;  ///< side of a picture element at the scene
+  cv::Mat1d kelvin;      ///< radiation temperature of each picture element
+  cv::Mat1b target;      ///< mask of the target: not 0 inside; an empty matrix means that there is no target
+  double element_m = 0;  ///< side length of a picture element in the scene
 };
 
-/// Scene of regions in the order of painting (later regions cover earlier regions), or of a picture. Copyable.
+/// Scene that consists of regions or of a picture. Copyable.
 struct FieldScene {
-  std::string name, description;
-  double background_k = 300;  ///< temperature of places without a region, or beyond the edges of the picture
-  double background_emissivity = 1;
-  double surround_k = 300;  ///< radiation temperature of the reflected surround
-  std::vector<SceneRegion> regions;
-  std::optional<ScenePicture> picture{};
+  std::string name,                       ///< short name, "tank-front"
+      description;                        ///< description for people
+  double background_k = 300;              ///< temperature outside all regions, or outside the picture
+  double background_emissivity = 1;       ///< emissivity of the background, 0 to 1
+  double surround_k = 300;                ///< radiation temperature of the surround that the surfaces reflect
+  std::vector<SceneRegion> regions;       ///< regions in the order of painting: later regions cover earlier regions
+  std::optional<ScenePicture> picture{};  ///< picture that replaces the regions; empty: the scene consists of regions
 };
 
-/// Largest number of views of a target.
+/// Maximum number of views of a target.
 inline constexpr std::size_t most_aspects = 16;
-/// Target of a set with its views. The origin of each view is the middle of the visible target.
+/// Target of a set for identification.
 struct IdentificationTarget {
-  std::string name;
-  std::vector<FieldScene> aspects;
+  std::string name;                 ///< name of the target in the set
+  std::vector<FieldScene> aspects;  ///< views of the target; the origin of each view is the centre of the visible
+                                    ///< target
 };
 
-/// Checks a scene. Errors: `invalid_input` in one sentence (an empty scene, temperatures of 0 K or below, emissivities
-/// outside 0 to 1, outlines that cross themselves or have no area, a picture without scale or with values that are not
-/// temperatures).
+/// Checks a scene. Error: `invalid_input` (an empty scene, temperatures of 0 K or below, emissivities outside 0 to 1,
+/// outlines that cross themselves or have no area, a picture without scale or with values that are not temperatures).
 [[nodiscard]] Result<void> validate(const FieldScene& scene);
 
-/// Returns a scene of the cut-outs of a plate in front of their surround, all marked as targets. A millimetre of the
-/// plate is 0.001 m in the scene. `delta_t_k`: cut-outs minus surround; `background_k`: temperature of the surround.
+/// Returns a scene in which the cut-outs of a plate are the regions. All regions are marked as targets. One millimetre
+/// on the plate is 0.001 m in the scene. `delta_t_k`: temperature of the cut-outs minus temperature of the plate.
+/// `background_k`: temperature of the plate.
 [[nodiscard]] FieldScene scene_of_plate(const TargetPlate& plate, double delta_t_k, double background_k);
 
 /// Radiometry of a camera: its band, and the temperature at which radiance is converted to kelvin.
 struct RadianceScale {
-  SpectralBand band{};
-  double calibration_k = 300;
-  /// Returns a radiance difference in W/(m2 sr), divided by dB/dT at calibration_k.
+  SpectralBand band{};         ///< wavelengths to which the camera is sensitive
+  double calibration_k = 300;  ///< temperature at which radiance differences are converted to kelvin
+  /// Converts a radiance difference in W/(m2 sr) to kelvin: divides the difference by dB/dT at calibration_k.
   [[nodiscard]] double kelvin(double radiance_w_m2_sr) const;
 };
 
 /// Returns the regions in equivalent kelvin against the background, without air: [L - L_background] / (dB/dT).
 [[nodiscard]] std::vector<PaintedPolygon> levels_k(const FieldScene& scene, const RadianceScale& scale);
-/// Returns the picture in the same unit. Precondition: the scene has a picture.
+/// Returns the picture in equivalent kelvin against the background, without air. Precondition: the scene has a picture.
 [[nodiscard]] cv::Mat1d picture_levels_k(const FieldScene& scene, const RadianceScale& scale);
 /// Returns the radiance of the background at the scene, in W/(m2 sr).
 [[nodiscard]] double background_radiance(const FieldScene& scene, const SpectralBand& band);
 
 /// Signature of a target for range models: effective size and contrast.
 struct TargetSignature {
-  double area_m2 = 0;    ///< visible area
-  double mean_dt_k = 0;  ///< mean over the target minus mean along its outline, equivalent kelvin
-  double sd_k = 0;       ///< standard deviation over the target, equivalent kelvin
-  /// Returns sqrt(mean^2 + sd^2) in equivalent kelvin.
+  double area_m2 = 0;    ///< visible area of the target
+  double mean_dt_k = 0;  ///< mean over the target minus mean along its outline, in equivalent kelvin
+  double sd_k = 0;       ///< standard deviation over the target, in equivalent kelvin
+  /// Returns the effective contrast sqrt(mean_dt_k^2 + sd_k^2) in equivalent kelvin.
   [[nodiscard]] double dt_rss_k() const;
-  /// Returns the square root of the area.
+  /// Returns the effective size, the square root of the area, in metres.
   [[nodiscard]] double size_m() const;
 };
-/// Returns the signature of all parts that are marked as target. The mean along the outline is weighted by length.
-/// Empty if no target is visible. Exact for polygons.
+/// Returns the signature of all parts that are marked as target; empty if no target is visible. The mean along the
+/// outline is weighted by length. Area, mean and standard deviation over the target are exact for polygons.
 [[nodiscard]] std::optional<TargetSignature> target_signature(const FieldScene& scene, const RadianceScale& scale);
 
-/// Returns the largest extent of regions or picture in metres, along x and y.
+/// Returns the extent of all regions, or of the picture, along x and y in metres.
 [[nodiscard]] cv::Size2d extent_m(const FieldScene& scene);
 
 }  // namespace todbench

@@ -21,7 +21,7 @@ struct PlateScene {
   SceneMotion motion{};              ///< motion of the whole plate; a time constant or an exposure smears its picture
 };
 
-/// Returns the position in pixels (column, row; pixel centres are integers) of a place on the plate. `sample_mrad`:
+/// Returns the position in pixels (column, row; pixel centres are integers) of a point on the plate. `sample_mrad`:
 /// angle of a pixel along x and y.
 [[nodiscard]] cv::Point2d scene_pixel(const PlateScene& scene, cv::Point2d plate_mm, cv::Point2d sample_mrad,
                                       cv::Size sensor);

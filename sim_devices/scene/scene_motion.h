@@ -4,8 +4,8 @@
 
 namespace todbench {
 
-/// Angular velocity of the target in the picture, x right, y down. The target is tracked: the picture shows it smeared,
-/// but at its place.
+/// Angular velocity of the target in the picture, x right, y down. The target is tracked: in the picture it is smeared,
+/// but at its true position.
 struct SceneMotion {
   double x_mrad_s = 0, y_mrad_s = 0;
   bool operator==(const SceneMotion&) const = default;

@@ -24,7 +24,7 @@ struct TargetModel {
   std::vector<TargetPart> parts;
 };
 
-/// Checks a model. Errors: `invalid_input` in one sentence, as validate(FieldScene).
+/// Checks a model. Errors: `invalid_input`, as validate(FieldScene).
 [[nodiscard]] Result<void> validate(const TargetModel& model);
 
 /// Returns the view from far away at the height of the target. Azimuth 0 degrees is from ahead, 90 from its right side

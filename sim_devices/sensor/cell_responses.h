@@ -17,8 +17,8 @@ inline constexpr int cell_reach = 6;  ///< a cell affects samples up to this dis
 inline constexpr int response_side = 2 * cell_reach + 1;
 inline constexpr int largest_degree = 24;
 
-/// Values of the orthonormal Legendre polynomials on [-1/2, 1/2] at one place: p[a], and their integrals q[a] from
-/// -1/2. For a >= 1 the integrals vanish at both ends.
+/// Values of the orthonormal Legendre polynomials on [-1/2, 1/2] at one position: p[a], and their integrals q[a] from
+/// -1/2. For a >= 1 the integrals vanish at both limits of the range.
 struct LegendreValues {
   std::array<double, largest_degree + 2> p{}, q{};
 };
@@ -31,7 +31,7 @@ struct LegendreValues {
 /// radius and interpolated linearly.
 class SampleTransfer {
  public:
-  /// The band ends at the highest frequency that the planned effects pass, at most 16 cycles per pitch.
+  /// The upper limit of the band is the highest frequency that the planned effects pass, at most 16 cycles per pitch.
   SampleTransfer(const ChainScope& scope, const Accuracy& accuracy);
   [[nodiscard]] double band_per_sample() const { return band_ / per_pitch_; }
   /// Returns whether every effect in the chain is symmetric about both axes.

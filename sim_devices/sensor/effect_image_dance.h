@@ -46,7 +46,7 @@ class ImageDance {
 
  private:
   double sd_pitch_ = 0, aspect_ = 1;
-  /// Weights of the random numbers of this exposure and of earlier ones; squares sum to 1.
+  /// Weights of the random numbers of this exposure and of earlier exposures; the squares sum to 1.
   std::vector<double> weights_;
 };
 

@@ -12,9 +12,9 @@ namespace todbench {
 /// time of the picture.
 [[nodiscard]] cv::Point2d readout_slope(const SensorSpec& spec, SceneMotion motion);
 
-/// Returns the place at which sequential readout shows a point. `place` is its place if all rows sample together with
-/// `middle_row`. The change is a shear along the rows and a stretch across them. In pitches or samples. A slope of 0
-/// returns the place bit for bit.
+/// Returns the position of a point in a picture with sequential readout. `place`: position of the point if all rows
+/// sample together with `middle_row`. The change is a shear along the rows and a stretch across them. In pitches or
+/// samples. If the slope is 0, the position is returned bit for bit.
 [[nodiscard]] cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row);
 
 /// Returns the distance that the target moves between the two fields of an interlaced frame, in pitches. The even rows
@@ -25,8 +25,8 @@ namespace todbench {
 void take_odd_rows(cv::Mat& picture, const cv::Mat& later, int samples_per_pitch);
 
 /// Draws an interlaced picture. The even rows show the scene half of the delay before the time of the picture, and the
-/// odd rows half of the delay after it. `draw` takes a displacement of the target, in pitches, and returns the picture
-/// of all rows at one time. If `between_fields` is 0, `draw` is called once.
+/// odd rows half of the delay after it. `draw` receives a displacement of the target, in pitches, and returns the
+/// picture of all rows at one time. If `between_fields` is 0, `draw` is called once.
 template <typename Draw>
 [[nodiscard]] auto in_fields(cv::Point2d between_fields, int samples_per_pitch, Draw draw) {
   if (between_fields == cv::Point2d(0, 0)) return draw(cv::Point2d(0, 0));

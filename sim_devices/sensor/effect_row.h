@@ -52,11 +52,11 @@ struct Footprint {
 struct Transfer {
   TransferFunction (*factor)(const ChainScope& scope);
 };
-/// Moves the places of samples: returns the motion in pitches from one row of detectors to the next.
+/// Moves the positions of samples: returns the motion in pitches from one row of detectors to the next.
 struct Readout {
   cv::Point2d (*pitches_per_row)(const SensorSpec& spec, SceneMotion motion);
 };
-/// Moves the places of the whole scene, moving or not (effect_distortion.h).
+/// Moves the positions of the whole scene, moving or not (effect_distortion.h).
 struct Lens {};
 /// Moves the whole scene, differently in each exposure (effect_image_dance.h).
 struct Dance {};
@@ -65,13 +65,13 @@ struct Parameter {};
 
 /// Dependence of the noise between samples.
 enum class Colour {
-  white,    ///< independent from sample to sample; variance: `white_variance_k2` of the row
+  white,    ///< the noise of the samples is independent; its variance is `white_variance_k2` of the row
   coloured  ///< samples share random numbers
 };
 /// Dependence of the noise between frames.
 enum class Recurrence {
-  every_exposure,  ///< new random numbers in each exposure
-  fixed            ///< the same in every frame
+  every_exposure,  ///< the random numbers are new in each exposure
+  fixed            ///< the random numbers are the same in every frame
 };
 /// Adds noise to a picture of samples, multiplied by `weight` (the weight of one exposure in an average over
 /// exposures).
@@ -94,12 +94,12 @@ using EffectStage = std::variant<stage::Optics, stage::Footprint, stage::Transfe
 
 /// Extent over which a stage of image formation spreads the picture of a point, in pitches.
 struct Spread {
-  double period = 0;      ///< added to the period, so that tails do not wrap round
-  double window = 0;      ///< added round a window; shapes inside it are computed exactly
-  double variance = 0;    ///< in pitches squared, for the axis with the larger variance
-  double far = 0;         ///< the parts of a plane more than r pitches away contribute far r^(-5/3)
+  double period = 0;      ///< distance by which the period is enlarged, so that tails do not wrap round
+  double window = 0;      ///< distance by which a window is enlarged; shapes inside are computed exactly
+  double variance = 0;    ///< variance in pitches squared, for the axis with the larger variance
+  double far = 0;         ///< factor of the light from parts of a plane more than r pitches away: far r^(-5/3)
   double halo_share = 0;  ///< share of the light that is spread over `halo_reach`
-  double halo_reach = 0;  ///< added to the period, and round a frame
+  double halo_reach = 0;  ///< distance by which the period and a frame are enlarged for the halo
 };
 
 /// Samples that share one random number.
@@ -121,8 +121,10 @@ struct ExpectedScene {
   SceneMotion motion{};
   double s75_pitch = 0;
   double noise_exponent = 0;                                ///< d ln S75 / d ln q, margin included
-  std::array<double, all_effects.size()> noise_variance{};  ///< by effect, in units of the contrast squared
-  double total_variance = 0;                                ///< noise of the observer included
+  std::array<double, all_effects.size()> noise_variance{};  ///< variance of each effect, in units of the contrast
+                                                            ///< squared
+  double total_variance = 0;                                ///< variance of all noise, including the noise of the
+                                                            ///< observer
   /// Returns the change of ln S75 if this effect is left out, from the ratio of discriminabilities.
   std::function<double(Effect without)> discriminability_change;
 
@@ -138,13 +140,13 @@ enum class AxisDirections { alike, different };
 
 /// Row of the table. A member at its default means that the effect does not use it.
 struct EffectRow {
-  std::string_view title;  ///< as in the report
+  std::string_view title;  ///< title in the report
   std::vector<SensorKey> keys;
   /// Returns a sentence for an impossible combination of parameters, otherwise empty. Called after checking the ranges.
   std::string (*impossible)(const SensorSpec& spec) = nullptr;
 
   bool (*is_neutral)(const SensorSpec& spec, SceneMotion motion) = nullptr;
-  /// Sets the neutral value. Null if the effect has none; its stage then reads the plan.
+  /// Sets the neutral value. Null if the effect has no neutral value; its stage then reads the plan.
   void (*neutralise)(SensorSpec& spec) = nullptr;
   std::string_view neutral;  ///< the neutral value in words: "netd_k is 0"
 
@@ -162,7 +164,7 @@ struct EffectRow {
   /// Bound on the change of ln S75 when the effect is skipped; empty if there is no bound
   /// (docs/method/effect-planning.md).
   std::optional<double> (*bound)(const ExpectedScene& scene) = nullptr;
-  std::string_view always;  ///< reason for simulating it if it has no bound or is never skipped
+  std::string_view always;  ///< reason for which the effect is simulated, if it has no bound or is never skipped
   WhenBounded when_bounded = WhenBounded::may_be_skipped;
 };
 

@@ -14,7 +14,7 @@
 
 namespace todbench {
 
-/// Optics and detector of one sensor, for a scene with one motion. Shapes and places are in detector pitches of each
+/// Optics and detector of one sensor, for a scene with one motion. Shapes and positions are in detector pitches of each
 /// axis (on_detectors()). Thread-safe. Filter tables are computed once per lattice.
 class ImageChain {
  public:
@@ -42,12 +42,12 @@ class ImageChain {
     /// Estimated bound on the error of a sample, in units of the contrast.
     double max_error_estimate = 0;
   };
-  /// Computes samples of a shape on an infinite plane: `size` samples at distances of `step`, the first one at `first`,
-  /// both in detector pitches of each axis. Uses Richardson extrapolation from the periods P and 2P, because the
-  /// wrapped signal falls as P^-3; the difference between the two gives the error bound. If a shape reaches far beyond
-  /// the window, only its part near the window is computed in this way. The rest contributes the integrated tail of the
-  /// diffraction spot, c r^-3, so that memory and time do not grow with the shape. With sequential readout, the times
-  /// of the rows count from the row of the origin.
+  /// Computes samples of a shape on an infinite plane: `size` samples at distances of `step`, the first sample at
+  /// `first`, both in detector pitches of each axis. Uses Richardson extrapolation from the periods P and 2P, because
+  /// the wrapped signal falls as P^-3; the difference between the two gives the error bound. If a shape reaches far
+  /// beyond the window, only its part near the window is computed in this way. The rest contributes the integrated tail
+  /// of the diffraction spot, c r^-3, so that memory and time do not grow with the shape. With sequential readout, the
+  /// times of the rows count from the row of the origin.
   [[nodiscard]] InfinitePlane infinite_plane(const Polygon& shape_pitch, cv::Point2d first, double step,
                                              cv::Size size) const;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// User's program in place of the sensor. The program receives a scene and returns a frame.
+// Sensor simulated by a program of the user. The program receives a scene and returns a frame.
 #pragma once
 
 #include <cstdint>
@@ -17,43 +17,43 @@
 
 namespace todbench {
 
-/// Samples of the scene per detector pitch and axis that the program receives.
+/// Samples per detector pitch along each axis, in the scene that the program receives.
 inline constexpr int scene_samples_per_pitch = 4;
 
-/// Returns the program in place of the sensor; null if there is none.
+/// Returns the program that simulates the sensor; null if the sensor has no program.
 [[nodiscard]] const ModulePlan* sensor_module(const SensorSpec& spec);
-/// Checks that the program can simulate this sensor and scene. Errors: `invalid_input` in one sentence for microscan,
-/// super-resolution or a moving scene. Succeeds if there is no program.
+/// Checks that the program can simulate this sensor and scene. Succeeds if the sensor has no program. Error:
+/// `invalid_input` for microscan, super-resolution or a moving scene.
 [[nodiscard]] Result<void> check_sensor_module(const SensorSpec& spec, SceneMotion motion = {});
 
-/// Returns the facts for the header: the numbers of the sensor file by key, `ifov_mrad`, `scene_samples_per_pitch` and
-/// the seed.
+/// Returns the facts that the program receives at its start: the numbers of the sensor file by key, `ifov_mrad`,
+/// `ifov_y_mrad`, `scene_samples_per_pitch` and `seed`.
 [[nodiscard]] std::vector<SensorFact> sensor_facts(const SensorSpec& spec, std::uint64_t seed);
 
-/// Returns the scene in kelvin above its surround: exact means over the squares of a grid that is
-/// scene_samples_per_pitch times as fine as the detectors. Size: (width, height) times scene_samples_per_pitch; sample
-/// (0, 0) is in the corner of detector (0, 0).
+/// Returns the scene in kelvin above its surround. Each detector is divided into scene_samples_per_pitch by
+/// scene_samples_per_pitch squares; a sample is the exact mean over one square. The size is (width, height) times
+/// scene_samples_per_pitch. Sample (0, 0) is in the corner of detector (0, 0).
 [[nodiscard]] cv::Mat1f scene_picture_k(const PlateScene& scene, const SensorSpec& spec);
 
-/// Runs the program of a sensor. The first picture starts it. One thread at a time.
+/// Runs the program of a sensor. The first call of picture() starts the program. One thread at a time.
 class ModuleSensor {
  public:
+  /// Receives each line that the program writes to standard error.
   using OnLine = std::function<void(std::string_view line)>;
-  /// Precondition: sensor_module(spec).
+  /// Stores the sensor and the seed; does not start the program. Precondition: sensor_module(spec).
   ModuleSensor(SensorSpec spec, std::uint64_t seed, OnLine on_error_line);
 
-  /// Returns frame `index` of a scene_picture_k(), in kelvin above the surround. Errors: module_error().
+  /// Returns frame `index` of a scene from scene_picture_k(), in kelvin above the surround. Errors: module_error().
   [[nodiscard]] Result<cv::Mat1f> picture(const cv::Mat1f& scene_k, std::uint64_t index);
-  /// Returns frame `index` of a scene, in whole counts. Errors: those of picture(), and `invalid_input` (the scene
-  /// moves).
+  /// Returns frame `index` of a scene, in counts. Errors: those of picture(); `invalid_input` for a moving scene.
   [[nodiscard]] Result<cv::Mat1w> expose(const PlateScene& scene, std::uint64_t index);
 
  private:
-  SensorSpec spec_;
-  ModuleStageOptions options_;
-  std::optional<ModuleProcess> process_;
-  int answered_ = 0;
-  std::optional<std::pair<PlateScene, cv::Mat1f>> last_;  ///< scene and its picture
+  SensorSpec spec_;                                       ///< the simulated sensor
+  ModuleStageOptions options_;                            ///< command, facts and restarts of the program
+  std::optional<ModuleProcess> process_;                  ///< the running program; empty before its first start
+  int answered_ = 0;                                      ///< frames since the last start of the program
+  std::optional<std::pair<PlateScene, cv::Mat1f>> last_;  ///< the last exposed scene and its scene_picture_k()
 };
 
 }  // namespace todbench

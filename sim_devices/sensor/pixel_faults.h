@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults of single detectors that a camera does not hide. A seed determines their place, kind and size.
+// Faults of single detectors that a camera does not hide. A seed determines their position, kind and size.
 #pragma once
 
 #include <array>
@@ -17,7 +17,7 @@ namespace todbench {
 enum class PixelFaultKind {
   stuck,     ///< shows one level for every scene
   hot,       ///< a fixed offset
-  noisy,     ///< more temporal noise than the others
+  noisy,     ///< more temporal noise than other detectors
   blinking,  ///< jumps between two levels
 };
 inline constexpr std::array pixel_fault_kinds{PixelFaultKind::stuck, PixelFaultKind::hot, PixelFaultKind::noisy,
@@ -37,7 +37,7 @@ struct PixelFault {
   int phase = 0;       ///< blinking: offset of the cycle in pictures
 };
 
-/// Returns the faulty detectors: `defective_pixel_share` of all, a quarter of each kind on average. Places and sizes
+/// Returns the faulty detectors: `defective_pixel_share` of all, a quarter of each kind on average. Positions and sizes
 /// depend only on `defect_seed`.
 [[nodiscard]] std::vector<PixelFault> pixel_faults(const SensorSpec& spec);
 

@@ -48,7 +48,7 @@ class SensorModel {
   [[nodiscard]] cv::Mat1f picture(const cv::Mat1f& unit_signal, double delta_t_k, double background_k,
                                   std::uint64_t index) const;
   /// Returns frame `index` as the camera delivers it: the picture in counts, rounded and clipped to the significant
-  /// bits. A frame always holds whole counts, even if the plan skips quantisation.
+  /// bits. A frame always contains whole counts, even if the plan skips quantisation.
   [[nodiscard]] cv::Mat1w expose(const PlateScene& scene, std::uint64_t index) const;
   /// Returns the frame for an external signal, as for picture().
   [[nodiscard]] cv::Mat1w expose(const cv::Mat1f& unit_signal, double delta_t_k, double background_k,

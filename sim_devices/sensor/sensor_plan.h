@@ -22,7 +22,7 @@ struct EffectDecision {
   std::string reason;  ///< a sentence
   /// Change of the 75 % acuity if the effect is skipped; empty if no criterion bounds it.
   std::optional<double> predicted_change_percent;
-  bool on_request = false;  ///< skipped because a list `skip` names it, whatever the change
+  bool on_request = false;  ///< skipped because a list `skip` names it, regardless of the change
   /// Returns whether the effect is skipped and the sensor is the same with and without it.
   [[nodiscard]] bool changes_nothing() const { return decision == Decision::skip && predicted_change_percent == 0.0; }
 };

@@ -24,7 +24,7 @@ enum class DisplayReconstruction {
 enum class PitchAxis { x, y };
 
 /// A staring thermal camera: rectangular detectors on a rectangular lattice. Names state the units. Lengths in pitches
-/// are in pitches along x. Places and displacements in the picture are in pitches of each axis.
+/// are in pitches along x. Positions and displacements in the picture are in pitches of each axis.
 struct SensorSpec {
   std::string name;
   std::string description;
@@ -100,8 +100,8 @@ struct SensorSpec {
   bool operator==(const SensorSpec&) const = default;
 };
 
-/// Fails with `invalid_input` and one sentence for an impossible sensor (negative aperture, detector larger than pitch,
-/// zero focal length, ...).
+/// Fails with `invalid_input` for an impossible sensor (negative aperture, detector larger than pitch, zero focal
+/// length, ...).
 [[nodiscard]] Result<void> validate(const SensorSpec& spec);
 
 /// Fails with `invalid_input` for a sensor with different pitches along x and y, which `task` ("identification") does

@@ -49,7 +49,7 @@ class FootprintMtf {
 
 /// Returns the highest relevant frequency along either axis, in cycles per pitch: the cut-off of the optics, or the
 /// frequency at which they have reduced the signal to the tolerance. If no planned effect limits it, the spectrum of a
-/// sharp shape is unlimited. The limit of 16 cycles per pitch then leaves an error near 1/(pi^2 16) at edges.
+/// sharp shape is unlimited. The limit of 16 cycles per pitch then causes an error near 1/(pi^2 16) at edges.
 [[nodiscard]] double highest_frequency(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy);
 
 /// Returns the distance that the target moves from one row to the next, in pitches: the sum over the rows of

@@ -42,7 +42,7 @@ struct StagePicture {
   cv::Mat1d kelvin;             ///< above the surround
   double pixels_per_pitch = 1;  ///< pixels of this picture per detector pitch
   QString note;                 ///< effect of the stage, with numbers
-  /// Levels shown black and white for a scene; the same in every picture.
+  /// Temperatures that are displayed as black and as white for a scene; equal in all pictures.
   std::optional<std::pair<double, double>> grey_k{};
 };
 

@@ -8,7 +8,7 @@
 
 namespace todbench {
 
-/// Returns the plan for a connected camera without values that belong to another camera, so that none of them reaches
+/// Returns the plan for a connected camera without values that belong to another camera, so that no such value reaches
 /// the report of a real unit. Removes:
 /// - values of the plans `demo` and `acceptance` and of the emulated laboratory: texts, operator, addresses, times of
 ///   changes, limits, rows of the budget, and the IFOV of their camera;

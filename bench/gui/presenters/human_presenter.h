@@ -36,7 +36,7 @@ struct HumanOptions {
 /// order, so that the person understands the task on easy patches.
 [[nodiscard]] std::vector<JudgedTrial> patches_for_training(const std::vector<JudgedTrial>& trials,
                                                             const HumanOptions& options);
-/// Returns the temperatures that are shown black and white.
+/// Returns the temperatures that are displayed as black and as white.
 [[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged);
 /// Returns these temperatures for a display of the plan; they are the levels of operator_picture().
 [[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged, const ViewedDisplay& display);
@@ -80,7 +80,7 @@ class HumanPresenter final : public QObject {
   [[nodiscard]] std::size_t planned() const { return patches_.size(); }
   /// Returns the number of patches of the training that are still to be answered; 0: the answers count.
   [[nodiscard]] std::size_t training_left() const { return training_.size() - trained_; }
-  /// Returns whether the last answer of the training was right, in words; empty outside the training.
+  /// Returns whether the last answer of the training was correct, in words; empty outside the training.
   [[nodiscard]] const QString& feedback() const { return feedback_; }
   /// Returns, after the end, the mean over all people of the session.
   [[nodiscard]] const std::vector<PeopleMean>& means() const { return means_; }

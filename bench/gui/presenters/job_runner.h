@@ -26,9 +26,9 @@ class JobRunner final : public QObject {
   /// Stops the running job and waits for its end.
   ~JobRunner() override;
 
-  /// Starts a job in place of the others.
+  /// Stops the running job, discards waiting jobs, and starts this job.
   void start(Job job);
-  /// Adds a job after the others.
+  /// Adds a job that starts after all others.
   void queue(Job job);
   /// Result of stop(): whether it discarded jobs that had not started.
   enum class Waiting { none, dropped };

@@ -47,7 +47,7 @@ class MeasurePresenter final : public QObject {
   void pause();
   /// Ends the pause.
   void resume();
-  /// Ends the run within a second; the results so far stay.
+  /// Ends the run within a second; existing results are kept.
   void abort();
   /// Reports that the request of operator_request() is fulfilled.
   void operator_done() { desk_->answer(OperatorAnswer::done); }
@@ -55,7 +55,7 @@ class MeasurePresenter final : public QObject {
   [[nodiscard]] RunState state() const { return state_; }
   /// Returns the current phase in words.
   [[nodiscard]] QString phase() const { return phase_; }
-  /// Returns the number of presentations so far in this phase.
+  /// Returns the number of completed presentations of this phase.
   [[nodiscard]] std::size_t done() const { return done_; }
   /// Returns the number of planned presentations of this phase.
   [[nodiscard]] std::size_t planned() const { return planned_; }
@@ -65,10 +65,10 @@ class MeasurePresenter final : public QObject {
   [[nodiscard]] QString under_way() const;
   /// Returns "Request 7 of 24" while the run waits for the operator; the total is stated only for a constant schedule.
   [[nodiscard]] QString request_number() const;
-  /// Returns the request to the operator that the run waits for; empty: it does not wait.
+  /// Returns the request to the operator for which the run waits; empty: the run does not wait.
   [[nodiscard]] const std::optional<OperatorRequest>& operator_request() const { return request_; }
-  /// Returns the state of the target that the run waits for, with requested and reached values; empty: it does not
-  /// wait.
+  /// Returns the state of the target for which the run waits, with requested and reached values; empty: the run does
+  /// not wait.
   [[nodiscard]] const QString& waiting() const { return waiting_; }
   /// Returns the next step of the operator in a few words: the open request, or that no action is needed.
   [[nodiscard]] QString next_step() const;
@@ -90,7 +90,7 @@ class MeasurePresenter final : public QObject {
     return replayed_ && outcome_ ? std::optional(plan_) : std::nullopt;
   }
 
-  /// Return the curves of the camera and of its twin: during the run the fits so far, afterwards the results of the
+  /// Return the curves of the camera and of its twin: during the run the latest fits, afterwards the results of the
   /// session.
   [[nodiscard]] const std::optional<TodCurve>& measured() const { return measured_; }
   [[nodiscard]] const std::optional<TodCurve>& twin() const { return twin_; }
@@ -171,7 +171,7 @@ class MeasurePresenter final : public QObject {
   std::optional<bool> same_;
   std::optional<Away> away_;
   std::optional<std::filesystem::path> replayed_;  ///< empty: the last run used the camera
-  std::optional<std::filesystem::path> resumed_;   ///< session whose run the last one continued
+  std::optional<std::filesystem::path> resumed_;   ///< session whose run was continued by the last run
   Pause pause_;
   std::shared_ptr<OperatorRequests> desk_ = std::make_shared<OperatorRequests>();
   Inbox inbox_;

@@ -45,7 +45,7 @@ class NakedEyePresenter final : public QObject {
                               std::optional<int> shown_ms);
   /// Records the answer of the person to the picture shown now or last.
   void answer(Apex apex);
-  /// Stops the prediction, or ends with the answers so far.
+  /// Stops the prediction, or ends the experiment and keeps the answers.
   void abort();
 
   /// Returns whether the prediction is being computed.
@@ -54,7 +54,7 @@ class NakedEyePresenter final : public QObject {
   [[nodiscard]] const QImage& picture() const { return screen_.picture(); }
   /// Returns the level around the picture, 0 to 255.
   [[nodiscard]] int background_level() const;
-  /// Returns the session with the answers so far; empty before the prediction is complete.
+  /// Returns the session with its answers; empty before the prediction is complete.
   [[nodiscard]] const std::optional<NakedEyeSession>& session() const { return session_; }
   /// Returns the folder of the experiment.
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }

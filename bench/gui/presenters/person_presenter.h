@@ -60,7 +60,7 @@ class PersonPresenter final : public QObject {
              std::optional<int> shown_ms, int magnification = 24);
   /// Records the answer of the person to the frame shown now or last.
   void answer(std::size_t alternative);
-  /// Ends the experiment with the answers so far.
+  /// Ends the experiment and keeps the answers.
   void abort();
 
   /// Returns the state of the display.
@@ -69,7 +69,7 @@ class PersonPresenter final : public QObject {
   [[nodiscard]] const QImage& picture() const { return screen_.picture(); }
   /// Returns the experiment; empty before begin().
   [[nodiscard]] const std::optional<PersonExperiment>& experiment() const { return experiment_; }
-  /// Returns the answers so far, in the order of the trials.
+  /// Returns the answers in the order of the trials.
   [[nodiscard]] const std::vector<ExperimentAnswer>& answers() const { return answers_; }
   /// Returns the folder of the answers; empty before they are written.
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }

@@ -37,7 +37,7 @@ inline constexpr std::size_t most_columns_beside = 3;
 
 /// Column of a field of the kind `rows`.
 struct FieldColumn {
-  QString title;      ///< with the unit
+  QString title;      ///< title with the unit
   QStringList words;  ///< suggested names; empty: none. Other texts are accepted too
   QString longest{};  ///< text that must be fully visible; empty: the title
 };
@@ -45,7 +45,7 @@ struct FieldColumn {
 /// A line of the form. It accepts every readable value in range. The validation of the plan finds conflicts with other
 /// values.
 struct PlanField {
-  QString label;        ///< with the unit
+  QString label;        ///< label with the unit
   QString tool_tip;     ///< meaning, accepted values and default
   QString object_name;  ///< object name of the widget
   FieldKind kind = FieldKind::text;
@@ -57,7 +57,7 @@ struct PlanField {
   std::vector<std::string> paths{};
   /// Returns the text of the line for a plan.
   std::function<QString(const Plan&)> shown{};
-  /// Sets a text in the plan. On an error returns a sentence and leaves the plan as it is.
+  /// Sets a text in the plan. On an error returns a sentence and does not change the plan.
   std::function<QString(Plan&, const QString&)> entered{};
   QString section{};  ///< heading of the lines with the same section
 };

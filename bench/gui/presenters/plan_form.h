@@ -37,7 +37,7 @@ class PlanForm {
   void refused(const Error& error);
   /// Shows the plan in all lines and discards entered texts.
   void reset(const Plan& plan);
-  /// Adopts a plan that was changed elsewhere; entered texts that differ from it stay.
+  /// Adopts a plan that was changed elsewhere; entered texts that differ from the plan are kept.
   void rebase(const Plan& plan);
 
  private:

@@ -32,17 +32,17 @@ class PlanPresenter final : public QObject {
   [[nodiscard]] const Plan& plan() const { return bench_.plan(); }
   /// Returns the plan as TOML.
   [[nodiscard]] QString toml() const;
-  /// Uses the plan, or returns an error sentence and keeps the old one.
+  /// Uses the plan, or returns an error sentence and keeps the old plan.
   [[nodiscard]] QString apply(const Plan& plan);
   /// Uses the plan as apply() does. The error also names the key.
   [[nodiscard]] Result<void> use(const Plan& plan);
-  /// Uses the plan of a TOML text, or returns an error sentence and keeps the old one.
+  /// Uses the plan of a TOML text, or returns an error sentence and keeps the old plan.
   [[nodiscard]] QString apply_toml(const QString& text);
   /// Loads a plan by file or shipped name. Returns an error sentence; empty: success.
   [[nodiscard]] QString load(const QString& reference);
   /// Writes the plan to a file. Returns an error sentence; empty: success.
   [[nodiscard]] QString save(const QString& file) const;
-  /// Sets the number of phases for camera and twin that gives this uncertainty of S75; outlook() is updated during the
+  /// Sets the number of phases of camera and twin with which S75 has this uncertainty; outlook() is updated during the
   /// call. Returns an error sentence; empty: success.
   [[nodiscard]] QString set_tolerance_percent(double tolerance_percent);
   /// Adds an effect to [simulation] force or skip, or removes it from both. Returns an error sentence; empty: success.
@@ -104,7 +104,7 @@ class PlanPresenter final : public QObject {
   std::vector<AccuracyPrice> prices_;
   QString misfit_, trouble_;
   std::optional<Plan> expected_of_, prices_of_;
-  std::vector<Plan> undone_to_, redone_to_;  ///< the last element is the next one
+  std::vector<Plan> undone_to_, redone_to_;  ///< the last element is the next to be restored
   Plan last_;                                ///< plan before the current change
   Change change_ = Change::single, last_change_ = Change::single;
   EffectPlanner planner_;  // of both jobs

@@ -55,7 +55,7 @@ struct PlanForecast {
 struct PlannedContrast {
   double delta_t_k = 0;
   std::optional<double> s75_mrad;  ///< S75 by the first tier of the planner, or by expected_thresholds()
-  std::optional<double> camera_uncertainty_percent, twin_uncertainty_percent;  ///< half the 95 % interval of S75
+  std::optional<double> camera_uncertainty_percent, twin_uncertainty_percent;  ///< half of the 95 % interval of S75
 };
 
 /// Counts, time and uncertainties of a plan.
@@ -65,14 +65,14 @@ struct PlanPreview {
   std::optional<double> twin_s;
   std::vector<PlannedContrast> contrasts;
   std::vector<std::pair<double, double>> by_frames;  ///< bench time and uncertainty of PlanForecast::by_frames
-  /// Returns the largest uncertainty of the camera over the contrasts; empty if one has no threshold.
+  /// Returns the largest uncertainty of the camera over the contrasts; empty if a contrast has no threshold.
   [[nodiscard]] std::optional<double> uncertainty_percent() const;
 };
 
 /// Computes the outlook, fast enough to follow a slider. If the plan has other numbers of phases than the forecast,
-/// ln(1 + uncertainty) is scaled with the square root of forecast phases / plan phases (not for an adaptive schedule),
-/// and the time of the simulation with plan phases / forecast phases. If `seen` is null, only counts and bench time are
-/// computed.
+/// ln(1 + uncertainty) is scaled with the square root of forecast phases / plan phases, except for an adaptive
+/// schedule. The time of the simulation is scaled with plan phases / forecast phases. If `seen` is null, only counts
+/// and bench time are computed.
 [[nodiscard]] PlanPreview outlook(const Plan& plan, const std::vector<TargetPlate>& plates, const PlanForecast* seen,
                                   double frame_rate_hz);
 
@@ -90,8 +90,8 @@ struct AccuracyPrice {
 };
 
 /// Runs predict_plan() and predict_times() for tolerances from 0.5 to 20 %. Omits tolerances that 256 phases do not
-/// reach. Returns the points so far if stop is requested. The result does not depend on the tolerance and the phases of
-/// the plan. `known`: as for forecast().
+/// reach. If stop is requested, returns the points that are already computed. The result does not depend on the
+/// tolerance and the phases of the plan. `known`: as for forecast().
 [[nodiscard]] std::vector<AccuracyPrice> accuracy_prices(const LoadedPlan& loaded, const PlanForecast& seen,
                                                          const std::vector<ExpectedThreshold>& known,
                                                          double frame_rate_hz, EffectPlanner& planner,

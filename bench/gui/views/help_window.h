@@ -8,7 +8,7 @@ class QTextBrowser;
 
 namespace todbench {
 
-/// Help window.
+/// Window that shows one page at a time.
 class HelpWindow final : public QDialog {
   Q_OBJECT
 

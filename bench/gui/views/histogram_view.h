@@ -7,7 +7,7 @@
 
 namespace todbench {
 
-/// Histogram.
+/// Widget that draws the bins as bars.
 class HistogramView final : public QWidget {
   Q_OBJECT
 

@@ -46,7 +46,7 @@ class LookView final : public QWidget {
   QDoubleSpinBox *level_, *span_;
   QCheckBox* marks_;
   QPushButton *start_, *rescan_, *correct_, *snapshot_, *record_;
-  std::vector<QLineEdit*> controls_;  ///< in the order of all_camera_controls
+  std::vector<QLineEdit*> controls_;  ///< fields in the order of all_camera_controls
   QLabel *counters_, *reading_, *camera_;
   QPoint cursor_{-1, -1};
 };

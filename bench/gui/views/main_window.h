@@ -42,7 +42,7 @@ inline constexpr std::array all_views{View::look,  View::align, View::plan,   Vi
 /// Whether the window stores its state and restores it at the next start.
 enum class Memory { remember, forget };
 
-/// Main window.
+/// Window with the list of views, the current view, the message line and the state of the bench.
 class MainWindow final : public QMainWindow {
   Q_OBJECT
 

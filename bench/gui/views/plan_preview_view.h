@@ -40,7 +40,7 @@ class PlanPreviewView final : public QWidget {
   QTableWidget *contrasts_, *effects_, *bill_;
   QCheckBox* neutral_;  ///< shows the rows of neutral effects
   PlotView* prices_;
-  std::vector<QComboBox*> choices_;  ///< in the order of the effects
+  std::vector<QComboBox*> choices_;  ///< choices in the order of the effects
 };
 
 }  // namespace todbench

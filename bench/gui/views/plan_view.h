@@ -53,7 +53,7 @@ class PlanView final : public QWidget {
   PlanPresenter& presenter_;
   PlanForm form_;
   Plan shown_;
-  std::vector<FieldEditor*> editors_;           ///< in the order of the form's fields
+  std::vector<FieldEditor*> editors_;           ///< editors in the order of the form's fields
   std::vector<QToolButton*> folds_, folds_of_;  ///< one for each section; one for each field
   QTabWidget* tabs_;
   QPlainTextEdit* toml_;

@@ -6,7 +6,7 @@
 
 namespace todbench {
 
-/// Start page.
+/// Page with a button for each of the three ways.
 class StartView final : public QWidget {
   Q_OBJECT
 

@@ -23,7 +23,7 @@ enum class FeatureKind {
   text,  ///< `bytes` characters
   /// A Boolean: bit `bit` of the register, counted from the highest as GenICam does for big-endian registers.
   bit,
-  chunk_integer,  ///< in the chunk `chunk_id` after every frame, eight bytes
+  chunk_integer,  ///< an integer of eight bytes in the chunk `chunk_id` after every frame
   chunk_scaled,   ///< a signed number of four bytes in a chunk, times `per_raw`
 };
 
@@ -47,7 +47,7 @@ struct CameraFeature {
   unsigned bit = 0;
   std::uint32_t chunk_id = 0;
   bool locked_while_streaming = false;
-  std::string text = {};  ///< at power-up
+  std::string text = {};  ///< text at power-up
   std::string about = {};
   std::string formula = {}, choice = {};
 };
@@ -59,7 +59,7 @@ struct CameraFeature {
 
 /// Description of a camera.
 struct CameraDescription {
-  std::string vendor, model;  ///< in the description and in discovery
+  std::string vendor, model;  ///< names in the description and in discovery
   std::string file_name;      ///< file name of the description in the URL register of the camera
   std::vector<std::pair<std::string, std::vector<CameraFeature>>> categories;
   std::string name_space = "GEV";        ///< "U3V" on USB

@@ -40,7 +40,7 @@ struct EncoderSettings {
   double kelvin_per_signal = 0.04;
   unsigned significant_bits = 14;            ///< larger values are clipped, also to the range of the format
   PixelFormat format = PixelFormat::mono16;  ///< mono8: the highest eight of the significant bits
-  GainControl gain = GainControl::none;      ///< for mono8, applied to the counts of the exposure
+  GainControl gain = GainControl::none;      ///< gain control for mono8, applied to the counts of the exposure
   bool test_ramp = false;  ///< pixel x of a row has the count x, modulo full scale, instead of the picture
   bool averages = false;   ///< averages with the previous picture, as noise reduction does
   bool big_endian = false;

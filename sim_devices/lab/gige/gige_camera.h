@@ -22,7 +22,7 @@ struct EmulatedGigeCameraConfig {
   std::string firmware = "1.0";
   int width = 320, height = 240;
   int significant_bits = 14;       ///< largest count 2^bits - 1; 14 offers Mono14 first, 15 and 16 Mono16
-  double frame_rate_hz = 50;       ///< at power-up; 0.1 ... 1000
+  double frame_rate_hz = 50;       ///< frame rate at power-up; 0.1 ... 1000
   double kelvin_per_count = 0.01;  ///< scale of the counts of the exposures
   double offset_k = 0;             ///< temperature of count 0
   PlanckScale radiometric{366545, 1428, 1, 342};  ///< scale of the counts in IRFormat=Radiometric (like a FLIR A35)
@@ -66,7 +66,7 @@ class EmulatedGigeCamera {
   EmulatedGigeCamera& operator=(const EmulatedGigeCamera&) = delete;
 
   [[nodiscard]] const EmulatedGigeCameraConfig& config() const;
-  /// Returns the number of exposures since power-up, including lost ones.
+  /// Returns the number of exposures since power-up, including lost exposures.
   [[nodiscard]] std::uint64_t exposures() const;
   /// Returns the number of exposures that were sent as zeros.
   [[nodiscard]] std::uint64_t failed_exposures() const;

@@ -44,7 +44,7 @@ struct GvspCameraConfig {
   int nuc_freeze_frames = 25;            ///< frames for which the last picture is repeated after a correction: 0.5 s
   unsigned automatic_nuc_frames = 3600;  ///< frames between automatic corrections
   std::optional<PixelFormat> only_format{};           ///< replaces the formats of the model
-  std::chrono::milliseconds heartbeat_timeout{3000};  ///< at power-up
+  std::chrono::milliseconds heartbeat_timeout{3000};  ///< heartbeat timeout at power-up
   std::uint16_t first_block_id = 65400;               ///< the 16-bit id wraps from 65535 to 1
   int row_padding_bytes = 0;                          ///< sent after every row, counted in the payload size
   int image_padding_bytes = 0;                        ///< sent after the last row, counted in the payload size
@@ -54,7 +54,7 @@ struct GvspCameraConfig {
   std::uint16_t chunk_payload_type = 0x4001;          ///< 4: GigE Vision 1.x, whose leader states no size
   ResendPolicy resend = ResendPolicy::answer;
   std::string description = {};               ///< served description, text or ZIP archive; empty: the model's
-  std::string description_url = {};           ///< stated location of the description; empty: the true one
+  std::string description_url = {};           ///< stated location of the description; empty: the true location
   std::chrono::milliseconds memory_delay{0};  ///< delay before every response to READMEM
   std::string deaf_feature = {};              ///< feature that accepts writes but keeps its value of power-up
   std::uint64_t seed = 1;                     ///< seed of the faults
@@ -82,8 +82,8 @@ struct GvspCameraCounts {
 class GvspCamera {
  public:
   /// Returns picture number `exposure_index`, counted from 0 at power-up over all streams. Not called for a picture
-  /// that is replaced by the previous one. Runs on the streaming thread; a call longer than a frame period lowers the
-  /// frame rate.
+  /// that is replaced by the previous picture. Runs on the streaming thread; a call longer than a frame period lowers
+  /// the frame rate.
   using Exposure = std::function<cv::Mat1w(std::uint64_t exposure_index)>;
 
   /// Powers the camera up and returns when it responds. Errors: `not_found` (no such interface, or port 3956 is busy),

@@ -10,17 +10,17 @@
 
 namespace todbench {
 
-/// Random faults. Each number is a probability 0 ... 1 that is drawn independently.
+/// Random faults. Each number is the probability of a fault, 0 ... 1. Faults are drawn independently of each other.
 struct GvspFaults {
-  double packet_loss = 0;    ///< per packet, including leaders, trailers and resent packets
-  double duplicate = 0;      ///< per packet: sent twice
-  double reorder = 0;        ///< per packet: exchanged with the next one
-  double late_leader = 0;    ///< per frame: the leader is sent after the trailer
-  double lost_frame = 0;     ///< per frame: exposed and numbered, but never sent
-  double frozen = 0;         ///< per frame: repeats the picture of the previous frame
-  double swapped_bytes = 0;  ///< per frame: the two bytes of every pixel are exchanged
-  double wrong_size = 0;     ///< per frame: contains half of its rows, and states this
-  double too_long = 0;       ///< per frame: contains undeclared bytes after the payload
+  double packet_loss = 0;    ///< a packet is lost; includes leaders, trailers and resent packets
+  double duplicate = 0;      ///< a packet is sent twice
+  double reorder = 0;        ///< a packet is exchanged with the next packet
+  double late_leader = 0;    ///< the leader of a frame is sent after the trailer
+  double lost_frame = 0;     ///< a frame is exposed and numbered, but never sent
+  double frozen = 0;         ///< a frame repeats the picture of the previous frame
+  double swapped_bytes = 0;  ///< the two bytes of every pixel of a frame are exchanged
+  double wrong_size = 0;     ///< a frame contains half of its rows, and states this
+  double too_long = 0;       ///< a frame contains undeclared bytes after the payload
   bool operator==(const GvspFaults&) const = default;
 };
 

@@ -39,7 +39,7 @@ struct PlateStageOptions {
   ScpiServerOptions server;
   std::string serial = "PS-0001";
   std::vector<std::string> plates;     ///< names of the slots, distinct; the first is in the beam at the start
-  double travel_mm = 5;                ///< to either side of the middle, on both axes
+  double travel_mm = 5;                ///< travel to either side of the middle, on both axes
   double speed_mm_per_s = 10;          ///< speed of the table
   double settle_s = 0.2;               ///< time from arrival to rest
   double resolution_mm = 0.001;        ///< resolution of the set-point
@@ -62,15 +62,15 @@ struct PlateStageOptions {
 
 /// State of the stage at one moment.
 struct PlateStageState {
-  std::string plate;                       ///< in the beam; the old plate until the change is complete
-  Mounting mounting = Mounting::identity;  ///< present mounting; the old one until the change is complete
+  std::string plate;                       ///< plate in the beam; the old plate until the change is complete
+  Mounting mounting = Mounting::identity;  ///< present mounting; the old mounting until the change is complete
   cv::Point2d shift_mm{0, 0};
   double speed_mm_per_s = 0;  ///< speed of a run along x, with sign; 0 for other movements of the table
   bool is_moving = false;     ///< a part moves or is not yet at rest
 };
 
 /// Instrument that serves from creation to destruction. The table moves to a new position in a straight line at
-/// constant speed, starting from its present place.
+/// constant speed, starting from its present position.
 class PlateStage {
   template <typename T>
   struct Change {  ///< `from` until `since` + `duration_s`, then `to`

@@ -19,7 +19,7 @@ namespace todbench {
 /// Configuration of the camera.
 struct SeekCameraConfig {
   SeekModel model = SeekModel::compact_pro;
-  std::string serial = "TB0001";    ///< in the descriptors; empty: only the chip has a number
+  std::string serial = "TB0001";    ///< serial number in the descriptors; empty: only the chip has a number
   double frame_rate_hz = 50;        ///< 0.1 ... 1000; real cameras send 7 ... 15
   int shutter_interval_frames = 0;  ///< frames after which the shutter closes for one frame; 0: only at the start
   int fixed_pattern_counts = 64;    ///< largest offset of a pixel, which the shutter frame shows

@@ -20,10 +20,10 @@ namespace todbench {
 /// Format of the GenICam description of the camera. Clients must support both formats.
 enum class U3vDescription { plain, zipped };
 
-/// Places where the camera states its identity.
+/// Location of the identity of the camera.
 enum class U3vIdentityNodes {
-  present,  ///< in its bootstrap registers and in its description
-  absent,   ///< in its bootstrap registers only
+  present,  ///< the bootstrap registers and the description state the identity
+  absent,   ///< only the bootstrap registers state the identity
 };
 
 /// Configuration of the camera.
@@ -31,7 +31,7 @@ struct U3vCameraConfig {
   std::string vendor = "todbench", model = "Emulated U3V", serial = "TB0001", firmware = "1.0";
   int width = 320, height = 240;
   int significant_bits = 14;  ///< 14 offers Mono14 first, 15 and 16 Mono16
-  double frame_rate_hz = 50;  ///< at power-up; 0.1 ... 1000
+  double frame_rate_hz = 50;  ///< frame rate at power-up; 0.1 ... 1000
   double kelvin_per_count = 0.01, offset_k = 0;
   int nuc_freeze_frames = 0;  ///< frames for which the last picture is repeated after a correction
   U3vDescription description = U3vDescription::plain;

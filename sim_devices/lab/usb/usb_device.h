@@ -47,9 +47,9 @@ class UsbDevice {
   [[nodiscard]] virtual const UsbDescriptors& descriptors() const = 0;
 
   /// Handles a control request. `data`: the bytes of the OUT stage. Returns the bytes of the IN stage (empty bytes for
-  /// an accepted OUT request). If it returns no value, usb_control() handles standard requests and stalls the others.
-  /// CLEAR_FEATURE, SET_CONFIGURATION and SET_INTERFACE are passed to this function first, for their effect on the
-  /// device.
+  /// an accepted OUT request). If it returns no value, usb_control() handles standard requests and stalls other
+  /// requests. CLEAR_FEATURE, SET_CONFIGURATION and SET_INTERFACE are passed to this function first, for their effect
+  /// on the device.
   [[nodiscard]] virtual std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data) = 0;
 
   /// Handles one bulk OUT transfer to `endpoint` (0x01 ... 0x0F). Returns false to stall.

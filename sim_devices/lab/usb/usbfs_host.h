@@ -14,11 +14,12 @@ namespace todbench {
 
 /// Device in a port, from creation to unplug() or destruction. Methods may be called from any thread.
 ///
-/// As with the kernel, transfers of an endpoint are performed in the order of submission, endpoints run in parallel, a
-/// discarded transfer ends with ENOENT, and a claimed interface is EBUSY for the next program. Unplugging ends every
-/// transfer with ESHUTDOWN and every call with ENODEV, and udev announces the removal. Unlike the kernel, poll() on the
-/// node is always ready. A REAPURBNDELAY without a finished transfer therefore waits for up to 0.3 ms before it returns
-/// EAGAIN, so that a polling client does not spin. Isochronous and interrupt transfers are rejected.
+/// As with the kernel, transfers of an endpoint are performed in the order of submission, and endpoints run in
+/// parallel. A discarded transfer ends with ENOENT. A second program that claims a claimed interface receives EBUSY.
+/// Unplugging ends every transfer with ESHUTDOWN and every call with ENODEV, and udev announces the removal. Unlike the
+/// kernel, poll() on the node is always ready. A REAPURBNDELAY without a finished transfer therefore waits for up to
+/// 0.3 ms before it returns EAGAIN, so that a polling client does not spin. Isochronous and interrupt transfers are
+/// rejected.
 class PluggedUsbDevice {
  public:
   /// Plugs the device in. Errors: `internal` (the emulated file system rejects it).

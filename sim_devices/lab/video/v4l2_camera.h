@@ -29,8 +29,8 @@ struct VideoDriverQuirks {
 /// Camera that serves frames during its lifetime. The node is a regular file, so that buffers can be mapped. Therefore
 /// poll() on it is always ready, and a DQBUF without a frame waits for up to 10 ms before it returns EAGAIN. Otherwise
 /// the camera behaves like a driver. Buffers are filled in the order in which they were queued. An exposure without a
-/// free buffer is lost and leaves a gap in the sequence. A second program receives EBUSY while one streams. An
-/// unplugged camera returns ENODEV, and udev announces its removal.
+/// free buffer is lost and causes a gap in the sequence. A second program receives EBUSY while the first program
+/// streams. An unplugged camera returns ENODEV, and udev announces its removal.
 ///
 /// The timestamps of the buffers (of unknown base, in the terms of V4L2) are times of the camera's clock, which
 /// advances by one frame period per exposure from power-up: exposure k has the time (k + 1) / rate. Exposures need a
@@ -56,7 +56,7 @@ class EmulatedV4l2Camera {
   /// Returns "/dev/video7", the path for clients under the preload library.
   [[nodiscard]] std::string node() const;
   [[nodiscard]] const VideoCameraConfig& config() const;
-  /// Returns the number of exposures since power-up, including lost ones.
+  /// Returns the number of exposures since power-up, including lost exposures.
   [[nodiscard]] std::uint64_t exposures() const;
   [[nodiscard]] std::uint64_t failed_exposures() const;
   [[nodiscard]] std::uint64_t nonuniformity_corrections() const;

@@ -32,7 +32,7 @@ struct EmulatedV4l2Camera::State {
   VideoWireFormat format;
   VideoDriverQuirks quirks;
   int number = 0;
-  int file = -1;  ///< the node, which holds the buffers
+  int file = -1;  ///< the node, which contains the buffers
   std::shared_ptr<MockSystem> system;
   UMockdevIoctlBase* handler = nullptr;
 

@@ -29,7 +29,7 @@ struct VideoCameraConfig {
   VideoCameraKind kind = VideoCameraKind::lepton;
   std::string vendor = "todbench", model = "Emulated UVC", serial = "TB0001";
   int width = 320, height = 240;  ///< size of the picture
-  double frame_rate_hz = 50;      ///< at power-up; 0.1 ... 1000
+  double frame_rate_hz = 50;      ///< frame rate at power-up; 0.1 ... 1000
   int nuc_freeze_frames = 0;      ///< frames for which the last picture is repeated after a correction
   int empty_first_frames = 0;     ///< first frames of the camera since power-up that are all zeros, including telemetry
   int short_frame_interval = 0;   ///< interval between exposures sent with half their bytes and no mark; 0: none
