@@ -14,8 +14,9 @@ struct ViewingFilter {
   double reach_samples = 0;    ///< beyond this distance the spatial response is nearly 0
 };
 
-/// Returns the filter. Without an eye: sample and hold times the Gaussian blur. With an eye: the square of display and
-/// H, because both act on the displayed patch and on the shape of the template. Precondition: an eye has a display.
+/// Returns the filter. Without an eye it is sample and hold times the Gaussian blur. With an eye it is the square of
+/// (display times H), because display and H act on the displayed patch and also on the shape of the template.
+/// Precondition: an observer with an eye has a display.
 [[nodiscard]] ViewingFilter viewing_filter(const TemplateObserverSpec& spec);
 
 }  // namespace todbench
