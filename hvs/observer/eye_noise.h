@@ -29,8 +29,8 @@ struct EyeTemplates {
 /// Immutable, thread-safe.
 class EyeNoise {
  public:
-  /// Largest share of the variance of a score that the draws may omit. For comparison, the variance of the difference
-  /// of the scores of two small triangles is about 1e-2 of their variance.
+  /// Largest share of the variance of a score that the draws may omit. For comparison, the scores of two small
+  /// triangles differ by about 1e-2 of their variance.
   static constexpr double max_left_out = 3e-4;
 
   /// `power`: H^2 times the square of the display's transfer, in cycles per displayed sample.

@@ -41,8 +41,9 @@ struct KnownCamera {
 /// largest score over its views and search positions.
 ///
 /// Blur affects the four orientations of a triangle equally, but it can make one shape similar to another. The
-/// templates can therefore include the blur of a known camera instead of display and eye. Without noise, the shown
-/// alternative then has the largest score (Cauchy-Schwarz inequality).
+/// templates can therefore include the blur of a known camera. Without an eye (hvs-1) this blur replaces display and
+/// blur of the eye; with an eye it is applied before display and eye. The shown alternative then has the largest score
+/// if there is no noise (Cauchy-Schwarz inequality).
 ///
 /// The templates of one view at all search positions (289 in hvs-1) are computed as linear combinations of fewer
 /// orthonormal pictures: 30 to 70 for triangles up to 4 samples. The residual of every template is below 1e-4 of its

@@ -32,8 +32,8 @@ enum class AddedWhiteNoise { no, yes };
 /// Each alternative begins a new row of scores: alternative o at search position p is element o * row() + p.
 class ScoreNoise {
  public:
-  /// Largest share of the variance of a score that may be missing. For comparison, the variance of the difference of
-  /// the scores of two small blurred triangles is slightly above 1e-2 of their variance.
+  /// Largest share of the variance of a score that may be missing. For comparison, the scores of two small blurred
+  /// triangles differ by slightly more than 1e-2 of their variance.
   static constexpr double max_left_out = 1e-5;
 
   explicit ScoreNoise(const TemplateBank& bank, AddedWhiteNoise white = AddedWhiteNoise::yes);
