@@ -15,7 +15,7 @@ struct PreparedPlate {
   TargetPlate plate;                                               ///< in identity mounting
   std::vector<std::shared_ptr<const PreparedObserver>> observers;  ///< per triangle; empty until the scale is known
   std::vector<double> size_px;                                     ///< per triangle
-  /// Returns the sides of the windows of its triangles, in samples.
+  /// Returns the side of the observer's window of each triangle, in samples.
   [[nodiscard]] std::vector<int> sides() const;
 };
 
