@@ -59,9 +59,9 @@ struct AveragedPicture {
   int count_step = 0;
 };
 
-/// Returns the noise of a pixel in one frame, in kelvin. It is temporal_noise_k, divided by sqrt(1 - rho) if the lag-1
-/// correlation rho is significant, because differences of successive frames then contain only the part sqrt(1 - rho) of
-/// the noise.
+/// Returns the noise of a pixel in one frame, in kelvin. If the lag-1 correlation rho is at least 0.05, it is
+/// temporal_noise_k / sqrt(1 - rho), because differences of successive frames contain only the part sqrt(1 - rho) of
+/// the noise. Otherwise it is temporal_noise_k.
 [[nodiscard]] double noise_of_one_frame(const AveragedPicture& picture);
 
 /// Takes frames from a started source. One thread at a time.

@@ -99,9 +99,9 @@ struct MovingListener {
 
 /// Measures a moving plate. Set-ups are prepared and checked as in measure(). A pass with lost frames or without a
 /// located plate is dropped, and its record states the reason. The run ends with `integrity` if at least four passes,
-/// and at least a third of all passes, are dropped. A run that ends early after its first answers returns these answers
-/// and `ended_by`. Errors: `invalid_input` (a target that cannot move, speeds above 5 pixels a frame, a run longer than
-/// the travel of the stage, displayed samples finer than the detectors), those of measure().
+/// and at least a third of the passes made until then, are dropped. A run that ends early after its first answers
+/// returns these answers and `ended_by`. Errors: `invalid_input` (a target that cannot move, speeds above 5 pixels a
+/// frame, a run longer than the travel of the stage, displayed samples finer than the detectors), those of measure().
 [[nodiscard]] Result<MovingMeasurement> measure_moving(FrameSource& source, Target& target, TemplateObserver& observer,
                                                        const MovingMeasurementOptions& options, RunController& host,
                                                        const MovingListener& listener, std::stop_token stop);

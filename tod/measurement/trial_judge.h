@@ -48,8 +48,8 @@ class TrialJudge {
   /// picture); `internal` (frames whose sampling differs from the options); those of the observer.
   [[nodiscard]] Result<PresentationAnswers> answers(const PresentationShown& shown, const std::stop_token& stop);
 
-  /// Converts the side of a window from samples of the judged picture to pixels of the camera, rounded up to an even
-  /// number.
+  /// Converts the side of a window from samples of the judged picture to pixels of the camera. The result is an even
+  /// number that covers the window.
   [[nodiscard]] int in_pixels(int side) const;
 
  private:

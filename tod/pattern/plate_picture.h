@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plate as a picture for a display, drawn by exact area.
+// A plate as a picture for a display. The level of a pixel is computed from exact covered areas.
 #pragma once
 
 #include <opencv2/core.hpp>
