@@ -26,7 +26,7 @@ struct ShareOfPairs {
 /// Precondition: at least two draws, all rows of equal length.
 [[nodiscard]] ShareOfPairs share_of_pairs(const IntervalScores& pattern, const IntervalScores& other);
 
-/// Lowest contrast at which the share reaches 75 %, interpolated as probit of the share over ln contrast.
+/// Lowest contrast at which the share increases across 75 %, interpolated as probit of the share over ln contrast.
 struct PassedContrast {
   std::optional<double> contrast_k;
   double relative_error = 0;

@@ -69,7 +69,7 @@ enum class OperatorAnswer { done, stop };
 using AskOperator = std::function<Result<OperatorAnswer>(const OperatorRequest& request, const std::stop_token& stop)>;
 
 /// Returns the steps from one state to the next. Without a last state, plate and contrast are requested. A move is
-/// requested only if no other step is needed, because every other step on the plate moves it as well.
+/// requested only if no other step is needed, because handling the plate moves it anyway.
 [[nodiscard]] OperatorRequest request_between(const std::optional<TargetState>& last, const TargetState& next);
 
 /// Returns the step as a request, without initial capital and full stop: "set the black body to +2.000 K against the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mean of answers according to the function of a twin, in the parameters of the search.
+// Mean of answers according to the function of a twin, as a function of the parameters of the search.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ inline constexpr std::size_t twin_size = 0, twin_slope = 1, twin_bend = 2, twin_
 [[nodiscard]] double largest_twin_lapse(const TwinShape& shape);
 
 /// Mean of an answer: mu(S) = 1/4 + r (F(c + k d + e d^2) - 1/4) with d = ln S - ln S75, r = 1 - lapse / (3/4) and F(c)
-/// = 1/4 + 1/2 / r, so that mu(S75) = 3/4 for every lapse. Keeps a reference to the shape.
+/// = 1/4 + 1/2 / r. Therefore mu(S75) = 3/4 for every lapse. The shape must outlive the object.
 class TwinMean {
  public:
   TwinMean(const TwinShape& shape, const TwinPlace& place);
