@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Subject of a finding. The comments state the subject, then the value and, where they differ in kind, the limit.
+/// Subject of a finding. Each comment states the subject, followed by the meaning of value and limit.
 enum class FindingKind {
   deviance,              ///< shape of the answers differs from the model; standard deviations in the stated direction
   lapse,                 ///< a free lapse explains the answers better; 2 ln likelihood ratio, corrected for clusters

@@ -199,9 +199,9 @@ struct PsychometricFit {
 /// Intervals are computed by profile likelihood and from the posterior. Levels may be unsorted, repeated, or single
 /// trials. With clusters (Level::cluster >= 0) the intervals are widened by the sandwich variance over clusters and
 /// Student's t. With more than 400 different sizes, neighbouring sizes are pooled for the search; the final Newton
-/// steps use each size. Pooling 100 000 sizes over a factor of ten changes them by less than 1e-4 of the interval.
-/// Errors: `invalid_input` (negative, denormal or non-finite size, fractional or negative counts, correct > total, more
-/// than 1e12 trials).
+/// steps use each size. For 100 000 sizes over a factor of ten, the effect of pooling is less than 1e-4 of the
+/// interval. Errors: `invalid_input` (negative, denormal or non-finite size, fractional or negative counts, correct >
+/// total, more than 1e12 trials).
 [[nodiscard]] Result<PsychometricFit> fit_psychometric(std::span<const Level> levels, const FitOptions& options);
 
 /// Fits the function of fit_psychometric() to graded answers by quasi-likelihood. The mean is that of binary answers,

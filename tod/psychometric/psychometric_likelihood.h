@@ -53,9 +53,8 @@ enum class Counts { whole, fractional };
 /// Pools two sets, with sizes relative to the reference of the first.
 [[nodiscard]] PooledCounts pool(const PooledCounts& a, const PooledCounts& b);
 
-/// Merges neighbouring levels so that at most `most_levels` remain. The range of ln size is divided into equal spans,
-/// and the levels of one span are merged. The ln size of a merged level is the mean over its levels, weighted by
-/// trials.
+/// Merges neighbouring levels so that at most `most_levels` remain. Levels within one span of ln size are merged; all
+/// spans have the same length. The ln size of a merged level is the mean over its levels, weighted by trials.
 [[nodiscard]] PooledCounts grouped(const PooledCounts& counts, std::size_t most_levels);
 
 /// Model parameters of the search: t = ln(threshold / reference size), q = ln slope, lapse.
