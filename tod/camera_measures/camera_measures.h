@@ -101,6 +101,7 @@ struct TransferStep {
 struct TransferMeasure {
   /// Number of averaged frames at each step.
   int frames_each = 0;
+  /// One element for each contrast.
   std::vector<TransferStep> steps;
   /// Straight line of the observed contrast as a function of the reported contrast. The slope is 1 if the temperature
   /// scale of the camera is correct.
@@ -112,8 +113,11 @@ struct TransferMeasure {
 
 /// IFOV and distortion from the first plate.
 struct GeometryMeasure {
+  /// Name of the plate.
   std::string plate;
+  /// Number of averaged frames.
   int frames = 0;
+  /// Set contrast.
   double set_delta_t_k = 0;
   /// Distance to the plate.
   double distance_m = 0;
@@ -121,7 +125,9 @@ struct GeometryMeasure {
   double stated_ifov_mrad = 0;
   /// Height of a pixel divided by its width, as the plan states.
   double pixel_aspect = 1;
+  /// Size of the picture in pixels.
   cv::Size picture{0, 0};
+  /// Result of plate_geometry().
   PlateGeometry geometry;
   /// Relative standard uncertainty of the distance. Empty: not stated.
   std::optional<double> distance_relative_u{};
@@ -140,21 +146,33 @@ struct GeometryMeasure {
 
 /// MTF from a plate with rectangles.
 struct MtfMeasure {
+  /// Name of the plate.
   std::string plate;
+  /// Number of averaged frames.
   int frames = 0;
+  /// Set contrast, and contrast reported by the target.
   double set_delta_t_k = 0, said_delta_t_k = 0;
-  double pitch_mrad = 0;           ///< IFOV of a pixel, from the measurement
-  double frequency_per_pitch = 0;  ///< frequency at which the MTF is stated
-  std::vector<EdgeMtf> edges;      ///< the rectangle nearest to the centre of the picture first
+  /// IFOV of a pixel, as the plan states.
+  double pitch_mrad = 0;
+  /// Frequency at which the MTF is stated.
+  double frequency_per_pitch = 0;
+  /// MTF of each rectangle and axis. The rectangle nearest to the centre of the picture is first.
+  std::vector<EdgeMtf> edges;
 };
 
 /// CTF from a plate with bars.
 struct CtfMeasure {
+  /// Name of the plate.
   std::string plate;
+  /// Number of averaged frames.
   int frames = 0;
+  /// Set contrast, and contrast reported by the target.
   double set_delta_t_k = 0, said_delta_t_k = 0;
-  double pitch_mrad = 0;           ///< IFOV of a pixel, from the measurement
-  double frequency_per_pitch = 0;  ///< requested frequency
+  /// IFOV of a pixel, as the plan states.
+  double pitch_mrad = 0;
+  /// Requested frequency.
+  double frequency_per_pitch = 0;
+  /// Result of plate_bars_ctf().
   PlateBarsCtf bars;
 
   /// Returns the group on this axis with the frequency nearest to the requested one; null if this axis has no group.
@@ -163,14 +181,20 @@ struct CtfMeasure {
 
 /// Size-of-source effect from a plate with square apertures.
 struct SourceSizeMeasure {
+  /// Name of the plate.
   std::string plate;
+  /// Number of averaged frames of each picture.
   int frames = 0;
+  /// Set contrast.
   double set_delta_t_k = 0;
   /// Contrast reported by the target, minus the contrast that it reports without contrast.
   double said_delta_t_k = 0;
-  double stated_px = 0;  ///< side of the square source whose loss is stated
+  /// Side of the square source whose loss is stated.
+  double stated_px = 0;
+  /// Result of source_size().
   SourceSize effect;
-  std::optional<double> model_loss{};  ///< loss of a simulated sensor at `stated_px`; empty for a real camera
+  /// Loss of a simulated sensor at `stated_px`. Empty for a real camera.
+  std::optional<double> model_loss{};
 
   /// Returns the signal of the reference aperture divided by the contrast that the target reports: the slope of the
   /// signal transfer for an extended source. The interval includes only the noise.
@@ -179,25 +203,34 @@ struct SourceSizeMeasure {
 
 /// Mean picture of the first plate, at the contrast with the largest magnitude.
 struct PlateView {
+  /// Number of averaged frames.
   int frames = 0;
+  /// Set contrast.
   double set_delta_t_k = 0;
+  /// Registration of the plate in this picture.
   Registration where;
+  /// Size of the picture in pixels.
   cv::Size picture{0, 0};
-  cv::Rect field;    ///< area of the plate without its rim, in the picture
-  cv::Mat1d kelvin;  ///< temperatures of the field
+  /// Area of the plate without its rim, in the picture.
+  cv::Rect field;
+  /// Temperatures of the field.
+  cv::Mat1d kelvin;
   /// Temporal noise of a pixel in one frame. 0: not known.
   double temporal_noise_k = 0;
 };
 
 /// Picture of the plate by the camera, and by the sensor model at the same position.
 struct PlatePicture {
+  /// Picture by the camera.
   PlateView seen;
   /// Model picture of the field, without noise. Contrast, level and position are fitted to the camera's picture.
   cv::Mat1d expected_k;
   /// Outlines of the located triangles, in pixels of the picture.
   std::vector<Polygon> outlines;
-  double contrast_k = 0;  ///< fitted
-  double moved_px = 0;    ///< distance between the fitted and the located position
+  /// Fitted contrast.
+  double contrast_k = 0;
+  /// Distance between the fitted and the located position.
+  double moved_px = 0;
   /// Root mean square difference of the two pictures over the field.
   double residual_k = 0;
   /// Returns the residual divided by the temporal noise of the mean picture. The ratio is near 1 if the residual is
@@ -221,7 +254,8 @@ struct CameraMeasures {
   std::optional<TimingMeasure> timing{};
   std::optional<LatencyMeasure> latency{};
   std::optional<MrtdMeasure> mrtd{};
-  std::vector<TriangleStrip> triangles{};  ///< one element for each contrast
+  /// Pictures of the smallest triangles, one element for each contrast.
+  std::vector<TriangleStrip> triangles{};
   /// NETD of a simulated sensor, in closed form. Empty for a real camera.
   std::optional<double> netd_model_k{};
   /// Time constant of a simulated sensor. Empty for a real camera.

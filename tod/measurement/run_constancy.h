@@ -13,6 +13,7 @@ namespace todbench {
 
 /// Noise in the frames that are averaged to measure the contrast of one set-up.
 struct PictureNoise {
+  /// Set contrast.
   double set_delta_t_k = 0;
   /// Noise of a pixel in one frame, from differences of successive frames. Above 0.
   double noise_k = 0;
@@ -32,9 +33,11 @@ struct PictureNoise {
 
 /// Residue of the previous picture in the first frame of an average.
 struct PictureResidue {
-  /// Share of the difference between the previous picture and this picture that remains. 0: no residue.
+  /// Share of the difference between the previous picture and this picture that remains in the first frame. 0: no
+  /// residue.
   double share = 0;
-  double limit = 0;  ///< above this limit the picture was still changing
+  /// Largest share at which the picture is regarded as constant.
+  double limit = 0;
   /// True: the residue is in the pictures after the stages. False: it is in the frames of the camera.
   bool behind_stages = false;
 };
@@ -43,6 +46,7 @@ struct PictureResidue {
 /// them, in which the contrast was measured. Both are amplitudes of the same fit (fit_place()), so an inexact blur
 /// changes both equally.
 struct PresentedContrast {
+  /// Set contrast.
   double set_delta_t_k = 0;
   /// Amplitude in the average, and its standard error.
   double measured = 0, measured_error = 0;
@@ -64,8 +68,11 @@ struct RunConstancy {
 
 /// A figure with its limit. A magnitude above the limit is a finding.
 struct ConstancyFigure {
+  /// Observed value, signed.
   double value = 0;
+  /// Limit of the magnitude of the value.
   double limit = 0;
+  /// Returns whether the magnitude of the value is above the limit.
   [[nodiscard]] bool beyond() const { return value > limit || value < -limit; }
 };
 

@@ -16,7 +16,9 @@ namespace todbench {
 /// and integrals, never for a reported likelihood.
 class LinkTable {
  public:
+  /// Computes the table of a link.
   explicit LinkTable(const Link& link);
+  /// Returns the link.
   [[nodiscard]] const Link& link() const { return link_; }
   /// Returns the ln likelihood of the positive levels. Blank trials are omitted, because they add only a constant.
   [[nodiscard]] double log_likelihood(const PooledCounts& counts, double t, double slope) const;
@@ -37,6 +39,7 @@ class LinkTable {
 /// table for several hundred values or more. The arguments of the constructor must outlive the object.
 class CountsTable {
  public:
+  /// Computes the table. The arguments must outlive the object.
   CountsTable(const LinkTable& table, const PooledCounts& counts);
   /// Returns the ln likelihood of the positive levels at the thresholds `ts`, which increase, and one slope. The values
   /// are those of LinkTable::log_likelihood().

@@ -106,10 +106,12 @@ struct EffectiveContrast {
   std::vector<ReferenceTriangle> references;  ///< the triangles used
 };
 
-/// Dimensions of the areas of effective_contrast().
-/// Distance from the edge to the inner area, as a share of the radius of the inscribed circle.
+/// Distance from the edge of a triangle to the inner area of effective_contrast(), as a share of the radius of the
+/// inscribed circle.
 inline constexpr double contrast_inner_share = 0.45;
-inline constexpr double contrast_inner_most_px = 1.25;  ///< upper limit of this distance: three blur widths of 0.4 px
+/// Upper limit of this distance: three blur widths of 0.4 px.
+inline constexpr double contrast_inner_most_px = 1.25;
+/// Width of the ring of effective_contrast().
 inline constexpr double contrast_ring_width_px = 3;
 
 /// Measures the contrast of every triangle of at least `min_size_px`. The contrast is the median of the inner area

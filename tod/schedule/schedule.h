@@ -46,7 +46,8 @@ struct ConstantStimuliOptions {
   int phases = 16;          ///< sub-pixel shifts per plate, mounting and contrast
   double pixel_mm = 1;      ///< size of a pixel on the plate; shifts are spread over one pixel in x and y
   double pixel_aspect = 1;  ///< ratio of height to width of a pixel; the width is pixel_mm
-  double change_cost_s[4] = {60, 30, 20, 0.1};  ///< plate, mounting, contrast, shift
+  /// Time in s for a change of plate, mounting, contrast and shift.
+  double change_cost_s[4] = {60, 30, 20, 0.1};
   /// Returns whether the plate is shown in the mounting, by their indices.
   [[nodiscard]] bool shows(std::size_t plate, std::size_t mounting) const {
     return mountings_per_plate.empty() || mounting < mountings_per_plate[plate];
