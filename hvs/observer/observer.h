@@ -18,7 +18,7 @@ namespace todbench {
 
 /// The window around one target, in displayed samples. Square, an even number of samples on a side.
 struct Patch {
-  cv::Mat1d kelvin;   ///< with any constant background, because only differences matter
+  cv::Mat1d kelvin;   ///< temperatures with any constant background, because only differences matter
   cv::Point2d phase;  ///< target centroid minus window centre, in samples; ignored by observers that search
   /// Temporal noise of the sensor, sd per sample; used only by observers that enlarge this noise.
   double noise_k = 0;
@@ -34,7 +34,7 @@ struct Choice {
 
 /// Probabilities of all answers of an observer to one patch, averaged over the noise that the observer adds.
 struct AnswerProbabilities {
-  std::array<double, Choice::max_alternatives> probability{};  ///< of each alternative; they sum to 1
+  std::array<double, Choice::max_alternatives> probability{};  ///< probability of each alternative; the sum is 1
   /// Standard error of the largest probability, if estimated from draws of the noise; 0: exact.
   double standard_error = 0;
   int draws = 0;  ///< number of noise draws; 0: exact

@@ -13,8 +13,8 @@ namespace todbench {
 
 /// Standard deviations of the noise that an observer adds, in units of its signal.
 struct ScoreNoiseLevels {
-  double white = 0;  ///< per sample
-  double eye = 0;    ///< of a score (EyeNoise::sd())
+  double white = 0;  ///< white noise per sample
+  double eye = 0;    ///< noise of the eye in a score (EyeNoise::sd())
   [[nodiscard]] double total() const { return eye == 0 ? white : std::hypot(white, eye); }
 };
 

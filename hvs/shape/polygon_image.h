@@ -40,7 +40,7 @@ class FilterTable {
  private:
   FrequencyLattice lattice_;
   cv::Mat_<std::complex<double>> values_;
-  std::vector<std::size_t> extents_;  ///< per row
+  std::vector<std::size_t> extents_;  ///< result of extent() for each row
   bool even_ = true, turns_alike_ = true;
 };
 
@@ -80,7 +80,8 @@ class PolygonImage {
   bool half_ = false;  ///< true: only the rows w = 0..band are stored
   int turns_ = 0;      ///< quarter turns of the image relative to its spectrum
   cv::Mat1d re_, im_;  ///< parts of the spectrum; rows are padded with zeros so that sums over them vectorise
-  std::vector<std::size_t> extents_;  ///< per row: columns up to the last value that is not zero, padding included
+  /// Number of columns of each row up to the last value that is not zero, padding included.
+  std::vector<std::size_t> extents_;
 };
 
 }  // namespace todbench

@@ -13,7 +13,7 @@ namespace todbench {
 
 /// The frequencies m / period, |m| <= band, in both directions.
 struct FrequencyLattice {
-  int period = 32;  ///< in unit lengths (pitches or samples), >= 1
+  int period = 32;  ///< period in unit lengths (pitches or samples), >= 1
   int band = 203;   ///< highest m kept; the highest frequency is band / period
   bool operator==(const FrequencyLattice&) const = default;
 };
@@ -51,9 +51,9 @@ class PolygonSpectrumRows {
   Polygon polygon_;
   FrequencyLattice lattice_;
   double reach_;
-  std::vector<PhaseTable> ex_, ey_;               ///< per vertex
-  std::vector<double> kx_, re_, im_;              ///< of the row
-  std::vector<std::vector<double>> e_re_, e_im_;  ///< per vertex: exp(-i k.v) of the row
+  std::vector<PhaseTable> ex_, ey_;               ///< phase tables of each vertex along x and y
+  std::vector<double> kx_, re_, im_;              ///< frequencies and sums of the present row
+  std::vector<std::vector<double>> e_re_, e_im_;  ///< exp(-i k.v) of each vertex v in the present row
 };
 
 }  // namespace todbench

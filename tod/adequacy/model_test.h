@@ -15,7 +15,7 @@ namespace todbench {
 /// Result of the score test with the largest ratio of score to limit.
 struct Departure {
   std::string towards;  ///< text for a sentence: "towards the acuity form"
-  double score = 0;     ///< in standard deviations
+  double score = 0;     ///< score in standard deviations
   /// Limit for this direction; the probability that any direction exceeds its limit by chance is
   /// FalseAlarms::departure.
   double limit = 0;

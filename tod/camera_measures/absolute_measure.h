@@ -22,7 +22,7 @@ namespace todbench {
 struct AbsoluteOptions {
   std::string plate;                   ///< name of the plate; its cut-out fills the picture
   std::vector<double> temperatures_k;  ///< of the black body, at least three; presented in order and in reverse order
-  int frames = 32;                     ///< number averaged at each temperature and each position of the source
+  int frames = 32;  ///< number of frames averaged at each temperature and each position of the source
   /// Shift of the source by the stage, which separates the fixed patterns of camera and source. 0: not separated.
   int shift_px = 8;
   double pixel_mm = 0;      ///< pixel pitch on the plate
@@ -39,7 +39,7 @@ struct AbsoluteOptions {
 struct AbsoluteLevel {
   double set_k = 0;
   double said_k = 0;      ///< reading of the black body
-  double expected_k = 0;  ///< for a correct camera
+  double expected_k = 0;  ///< temperature that a correct camera shows
   double seen_k = 0;      ///< mean of the picture
   /// Observed value of the second pass minus that of the first pass, corrected by the readings of the black body.
   double difference_k = 0;
@@ -58,7 +58,7 @@ struct AbsoluteMeasure {
   double repeatability_k = 0;
   double u_k = 0;  ///< standard uncertainty of seen_k of a level, with `degrees_of_freedom`
   int degrees_of_freedom = 0;
-  double source_u_k = 0;  ///< as in the options
+  double source_u_k = 0;  ///< standard uncertainty of the expected temperature, as in the options
   /// Straight line of the observed temperature as a function of the expected temperature: its slope, and its deviation
   /// from the expected temperature at the middle of the range.
   Estimate slope{}, offset_k{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Judges the bars and spots of a plate with the observer. Input are frames, output are thresholds. Uses no devices.
+// Judges the bars and spots of a plate with the observer. Computes thresholds from frames. Uses no devices.
 #pragma once
 
 #include <optional>
@@ -51,7 +51,7 @@ class BarsJudge {
     std::optional<IdentificationBank> bank{};
     std::vector<std::vector<float>> own_noise{};  ///< scores of white noise of sd 1
     std::vector<std::vector<float>> eye_noise{};  ///< scores of the noise of the eye of sd 1; empty without an eye
-    std::vector<Answers> answers{};               ///< by observer
+    std::vector<Answers> answers{};               ///< answers of each observer
     std::vector<double> phase{};                  ///< sampling phase of the target across the bars, by set-up
     bool left_out = false;
   };

@@ -27,20 +27,20 @@ struct BarsCtf {
   std::string group;  ///< name of the group
   EdgeAxis axis = EdgeAxis::x;
   double frequency_per_pitch = 0;    ///< across the bars, in this picture
-  double angle_deg = 0;              ///< from the axis to the direction across the bars
+  double angle_deg = 0;              ///< angle from the axis to the direction across the bars
   cv::Point2d middle_px{0, 0};       ///< centre of the group in the picture
   int pixels = 0;                    ///< number of pixels used for the profile
   double noise_over_contrast = 0;    ///< noise of one pixel, from the residuals of the profile
   Estimate best, mean, worst;        ///< over the sampling phases
   int bars_separated_at_best = 1;    ///< 4 if every space is lower than both neighbouring bars
   double share_of_four = 0;          ///< share of the phases at which four bars are separated
-  std::optional<BarsModel> model{};  ///< empty for a real camera
+  std::optional<BarsModel> model{};  ///< modulations of a simulated sensor; empty for a real camera
 };
 
 /// CTF of all groups of a plate.
 struct PlateBarsCtf {
   std::vector<BarsCtf> groups;  ///< x before y, low frequencies first
-  double contrast_k = 0;        ///< of large areas, signed, in the unit of the picture
+  double contrast_k = 0;        ///< contrast of large areas, signed, in the unit of the picture
   /// Share of contrast_k that the optics spread beyond the squares; contrast_k is corrected for it.
   double far_spread = 0;
   std::vector<std::string> reasons{};  ///< sentences about groups that could not be measured

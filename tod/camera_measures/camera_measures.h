@@ -84,8 +84,8 @@ struct CameraMeasuresOptions {
   std::optional<MrtdOptions> mrtd{};
   /// Options of the automatic gain, measured with contrast steps of the first plate. Empty: not measured.
   std::optional<ResponseOptions> gain_control{};
-  /// Options of the TOD measurement. Used are its plates, number of averaged frames, corrections, timeouts and
-  /// integrity limits. The first plate is shown in identity mounting.
+  /// Options of the TOD measurement. Its plates, numbers of averaged frames, corrections, timeouts and integrity limits
+  /// are used. The first plate is shown in identity mounting.
   MeasurementOptions measurement;
 };
 

@@ -20,7 +20,7 @@ struct EdgeMtf {
   EdgeAxis axis = EdgeAxis::x;
   int sides = 0;                            ///< number of measured sides
   cv::Point2d middle_px{0, 0};              ///< centre of the rectangle
-  double angle_deg = 0;                     ///< from the axis to the edge's normal, mean of the sides
+  double angle_deg = 0;                     ///< angle from the axis to the normal of the edge, mean of the sides
   double noise_over_step = 0;               ///< largest value among the sides
   std::vector<double> frequency_per_pitch;  ///< 0 ... 1, along the normal
   /// Mean of the sides, and limits of its 95 % interval, which is not symmetric. low = 0: not known.

@@ -19,7 +19,7 @@ struct KeptPlace {
   EdgeAxis axis = EdgeAxis::x;
   double frequency_per_pitch = 0;  ///< 0: a spot
   double size_px = 0;              ///< side of the spot; 0: bars
-  int side_px = 0;                 ///< of the windows
+  int side_px = 0;                 ///< side of the windows
 };
 
 /// The two windows of a KeptPlace in one frame, as the observer judges them: in kelvin, each minus its mean.

@@ -27,7 +27,7 @@ struct MrtdOptions {
   TargetPlate plate{};  ///< plate in identity mounting, with bar_pairs()
   /// Magnitudes of the contrasts, shown at both polarities.
   std::vector<double> contrasts_k{0.0025, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};
-  int frames = 16;  ///< number judged at each contrast of each set-up, one by one
+  int frames = 16;  ///< number of frames judged at each contrast of each set-up, one by one
   /// Number of positions of the plate relative to the pixels, divided among the mountings; at least 5.
   int set_ups = 8;
   std::vector<Mounting> mountings{Mounting::identity};
@@ -35,7 +35,7 @@ struct MrtdOptions {
   double spot_px = 3;                 ///< the spot with the nearest size is stated
   double pitch_mrad = 0;              ///< IFOV of a pixel
   double locating_k = 4;              ///< contrast at which the plate is located
-  int registration_frames = 32;       ///< number averaged to locate the plate
+  int registration_frames = 32;       ///< number of frames averaged to locate the plate
   int kept_frames = 0;                ///< number of frames kept for human observers at each contrast of each set-up
   double response = 1;                ///< observed contrast divided by the contrast that the target reports
   TemplateObserverSpec observer{};    ///< an observer with an eye includes its display

@@ -26,7 +26,7 @@ struct ZoneArea {
 struct PixelOptions {
   bool whole_frame = false;  ///< a flat field fills the frame; false: only the part covered by the plate is examined
   PixelDefectRules rules;
-  std::vector<ZoneArea> zones{};  ///< in addition to the whole frame
+  std::vector<ZoneArea> zones{};  ///< further zones in addition to the whole frame
 };
 
 /// Largest number of frames in which pixels are examined: 80 MB for 320 x 240.
@@ -52,7 +52,7 @@ struct PixelMeasure {
 /// A mean picture of a plate at a contrast.
 struct ContrastPicture {
   double delta_t_k = 0;
-  cv::Mat1d kelvin;  ///< of the whole frame
+  cv::Mat1d kelvin;  ///< picture of the whole frame
 };
 /// Returns the response to temperature of each pixel that lies inside a triangle, at least two pixels from its outline.
 /// The response is the slope of (pixel minus median of the plate) as a function of the contrast. NaN for any other

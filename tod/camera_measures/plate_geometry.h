@@ -29,7 +29,7 @@ struct PlateGeometry {
   /// Point of the plate at the centre of the picture, in mm from the centre of the plate. x is along the rows of the
   /// plate.
   Estimate centre_x_mm, centre_y_mm;
-  Estimate rotation_deg;        ///< of the plate in the picture, clockwise
+  Estimate rotation_deg;        ///< rotation of the plate in the picture, clockwise
   Estimate keystone_x_percent;  ///< scale at the plate's right border minus scale at its left border, relative
   Estimate keystone_y_percent;  ///< scale at the plate's lower border minus scale at its upper border, relative
   Estimate distortion_percent;  ///< k at the corner of the picture; positive: pincushion

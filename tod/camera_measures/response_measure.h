@@ -25,8 +25,8 @@ struct ResponseOptions {
   std::string plate;         ///< plate shown during the steps, in identity mounting
   double delta_t_k = 10;     ///< the contrast steps between 0 and this value
   int steps = 16;            ///< number of steps, alternately up and down
-  int frames = 24;           ///< number recorded after the target has reported the end of a step
-  int contrast_frames = 16;  ///< number averaged to find the pixels that change
+  int frames = 24;           ///< number of frames recorded after the target has reported the end of a step
+  int contrast_frames = 16;  ///< number of frames averaged to find the pixels that change
   /// Settling time of the contrast of the target; empty: the target must step instantly.
   std::optional<double> settling_s{};
   StepSignal signal = StepSignal::contrast;

@@ -19,7 +19,7 @@ struct SourceSizePoint {
   std::string place;   ///< name of the aperture, or of the ring round the spot
   bool spot = false;   ///< an opaque spot (inverse method); otherwise an aperture (direct method)
   double size_px = 0;  ///< side of the square
-  Estimate ratio;      ///< without spread of light: 1 for an aperture and 0 for a spot
+  Estimate ratio;      ///< ratio of these signals; without spread of light 1 for an aperture and 0 for a spot
   double fitted = 0;   ///< ratio according to the fitted tails
   double model = -1;   ///< ratio for a simulated sensor; negative: not known
 };

@@ -46,7 +46,7 @@ struct TimingMeasure {
 
 /// Options of measure_latency().
 struct LatencyOptions {
-  double speed_mm_s = 100;  ///< of the plate
+  double speed_mm_s = 100;  ///< speed of the plate
   double travel_mm = 20;    ///< distance of a run
   int runs = 8;             ///< number of runs, alternately to the right and to the left
 };

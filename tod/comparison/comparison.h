@@ -101,8 +101,9 @@ void add_paired(Comparison& comparison, std::size_t point, const RatioOfPairs& p
 struct ThresholdTest {
   double lr = 0;  ///< 2 (ll1 - ll0), chi-square with one degree of freedom
   double p_difference = 1;
-  double ln_ratio = 0;       ///< ln(threshold A / threshold B)
-  double se_ln_ratio = 0;    ///< from the observed information; 0 if the information is singular (a step)
+  double ln_ratio = 0;  ///< ln(threshold A / threshold B)
+  /// Standard error from the observed information; 0 if the information is singular (a step).
+  double se_ln_ratio = 0;
   double p_equivalence = 1;  ///< two one-sided tests (Wald) with the margin of the ratio; 1 without a standard error
   double ll_separate = 0, ll_common = 0;
 };

@@ -14,14 +14,14 @@ namespace todbench {
 struct PlannedLevel {
   double size = 0;                ///< > 0, any unit
   double trials = 0;              ///< >= 0, may be fractional
-  double proportion_correct = 0;  ///< in [0, 1]
+  double proportion_correct = 0;  ///< expected share of correct answers, in [0, 1]
 };
 
 /// Expected result of a design: the fit to the expected counts, and its uncertainty for this number of trials. Assumes
 /// independent trials, because clusters are not known beforehand.
 struct ExpectedFit {
   double threshold = 0, slope = 0, trials = 0;
-  double se_ln_threshold = 0;  ///< from the information of the expected counts
+  double se_ln_threshold = 0;  ///< standard error from the information of the expected counts
 };
 /// Fits the expected counts. Errors: `invalid_input` (a level out of range, or expected answers without a threshold;
 /// the message contains the verdict).
@@ -41,7 +41,7 @@ struct ExpectedFit {
 struct PlannedComparison {
   double delta_t_k = 0;
   double se_ln_a = 0, se_ln_b = 0;    ///< expected standard errors of both thresholds
-  double trials_a = 0, trials_b = 0;  ///< per contrast
+  double trials_a = 0, trials_b = 0;  ///< numbers of trials per contrast
   [[nodiscard]] double se_ln_ratio() const;
 };
 

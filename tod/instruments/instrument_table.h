@@ -44,12 +44,12 @@ struct InstrumentSpeech {
   SerialSettings serial{};
 
   std::string clear = "*CLS";            ///< sent before the first query; empty: none
-  std::string identity_query = "*IDN?";  ///< empty: the instrument has none
+  std::string identity_query = "*IDN?";  ///< identity query; empty: the instrument has no identity query
   /// True: the answer is vendor,model,serial,firmware (IEEE 488.2, 10.14); false: the whole line is the model.
   bool identity_of_four = true;
   std::string identity_contains;  ///< text that the identity must contain
 
-  std::string error_query = "SYST:ERR?";  ///< empty: the instrument does not report refusals
+  std::string error_query = "SYST:ERR?";  ///< error query; empty: the instrument does not report refusals
   ErrorsAsked errors_asked = ErrorsAsked::with_command;
   /// Answers to the error query that mean no error. Empty: the answer 0,"..." means no error (SCPI-99 volume 1, 21.8).
   std::vector<std::string> no_error;
@@ -80,7 +80,7 @@ struct NumberQuestion {
 
 /// Conditions for a settled instrument. All stated conditions must hold.
 struct SettledRule {
-  std::string query;                 ///< empty: not queried
+  std::string query;                 ///< query of the settling state; empty: not queried
   std::optional<int> bit;            ///< number of a bit in a 16-bit register; empty: `answers` is used
   bool bit_means_settling = true;    ///< true: the bit is set while settling; false: the bit is set when settled
   std::vector<std::string> answers;  ///< answers that mean settled, if `bit` is empty
@@ -89,9 +89,9 @@ struct SettledRule {
 
 /// Absolute set-point of a black body, in BlackBodyWords::absolute_unit.
 struct AbsoluteWords {
-  int decimals = 4;          ///< of the number in a command
+  int decimals = 4;          ///< number of decimals in a command
   std::string set;           ///< "SOUR:TEMP:ABS {}"
-  NumberQuestion set_point;  ///< empty: the set-point is commanded each time
+  NumberQuestion set_point;  ///< query of the set-point; empty: the set-point is commanded each time
   NumberQuestion limits;     ///< lowest and highest; empty: limits_k
   std::array<double, 2> limits_k{0, 0};
   double tolerance_k = 0.002;  ///< largest accepted difference between the reading of the radiator and the set-point
@@ -100,9 +100,9 @@ struct AbsoluteWords {
 /// A differential black body.
 struct BlackBodyWords {
   InstrumentUnit unit{"K"};
-  int decimals = 4;          ///< of the number in a command
+  int decimals = 4;          ///< number of decimals in a command
   std::string set;           ///< "SOUR:TEMP:DIFF {}"
-  NumberQuestion set_point;  ///< empty: the set-point is commanded each time
+  NumberQuestion set_point;  ///< query of the set-point; empty: the set-point is commanded each time
   NumberQuestion limits;     ///< lowest and highest; empty: limits_k
   std::array<double, 2> limits_k{0, 0};
   NumberQuestion measured;
@@ -110,7 +110,7 @@ struct BlackBodyWords {
   NumberQuestion plate;        ///< temperature of the surround; empty: not reported
   NumberQuestion radiator;     ///< temperature of the black body behind the plate; empty: not reported
   InstrumentUnit absolute_unit{"K"};
-  std::optional<AbsoluteWords> absolute{};  ///< only with a `radiator`
+  std::optional<AbsoluteWords> absolute{};  ///< absolute set-point; only with a `radiator`
 };
 
 /// Positions of a plate in its own plane. If a stage has no positions, the operator shifts the plate by hand.
@@ -149,9 +149,10 @@ struct StageWords {
   std::string catalogue;                         ///< query of the names of all plates; empty: `plates`
   std::vector<std::string> plates, plate_words;  ///< names of the plates, and the words of the stage for them
   StageChoice mounting;
-  std::array<std::string, all_mountings.size()> mounting_words;  ///< empty: this mounting is not available
+  /// Words of the stage, in the order of all_mountings. Empty word: this mounting is not available.
+  std::array<std::string, all_mountings.size()> mounting_words;
   std::optional<StagePosition> position;
-  std::optional<StageRun> run;  ///< only with a position
+  std::optional<StageRun> run;  ///< runs; only with a position
 };
 
 /// Kind of an instrument.
@@ -160,7 +161,7 @@ enum class InstrumentKind { black_body, stage };
 
 /// Command table of an instrument.
 struct InstrumentTable {
-  std::string name;         ///< of the file
+  std::string name;         ///< name of the file
   std::string description;  ///< make and model, shown to the user
   InstrumentKind kind = InstrumentKind::black_body;
   InstrumentSpeech speech;

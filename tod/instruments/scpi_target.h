@@ -18,11 +18,11 @@ namespace todbench {
 
 /// Options of open_scpi_target().
 struct ScpiTargetOptions {
-  std::string black_body;  ///< as for instrument_address()
-  std::string stage;       ///< as for instrument_address()
+  std::string black_body;  ///< address of the black body, as for instrument_address()
+  std::string stage;       ///< address of the stage, as for instrument_address()
   InstrumentTable black_body_table;
   InstrumentTable stage_table;
-  std::chrono::milliseconds settle_timeout{600'000};  ///< for one present(), by `now`
+  std::chrono::milliseconds settle_timeout{600'000};  ///< longest time for one present(), by `now`
   std::chrono::milliseconds poll_interval{100};
   /// Time between calls of on_wait, and before the first call, by `now`.
   std::chrono::milliseconds report_interval{500};

@@ -26,8 +26,8 @@ struct LagEstimate {
 /// down require presentations with a held contrast, because ramps alone do not distinguish an error of r from lags of
 /// opposite sign.
 struct ContrastLag {
-  LagEstimate all;                          ///< from all set-ups, ramps up and down together
-  std::optional<LagEstimate> down{}, up{};  ///< from the set-up with the held contrast
+  LagEstimate all;                          ///< lag from all set-ups, ramps up and down together
+  std::optional<LagEstimate> down{}, up{};  ///< lags of ramps down and up, from the set-up with the held contrast
 };
 
 /// Returns the lags by weighted least squares. `step_s`: time between successive presentations, used if the target

@@ -22,7 +22,7 @@ namespace todbench {
 struct PlateBeyondPicture {
   std::string plate;
   cv::Size2d size_mm;
-  cv::Size2d size_px;     ///< at `distance_m`
+  cv::Size2d size_px;     ///< size of the plate in the picture at `distance_m`
   double distance_m = 0;  ///< entrance pupil to plate
   cv::Size picture;
 };

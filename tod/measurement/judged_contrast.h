@@ -94,7 +94,7 @@ class JudgedFrames {
   const Registration& registration_;
   double min_size_px_;
   LagDifferences camera_noise_, judged_noise_;
-  std::vector<std::vector<double>> camera_, judged_;  ///< by frame and triangle
+  std::vector<std::vector<double>> camera_, judged_;  ///< contrast of each triangle in each frame
   cv::Mat1w lowest_, highest_;
   cv::Mat1d kelvin_sum_;
   cv::Point2d first_px_ = {0, 0};

@@ -44,7 +44,7 @@ struct MeasurementOptions {
   double ifov_mrad = 0;             ///< IFOV of one pixel, as the plan states
   double distance_m = 0;            ///< entrance pupil to plate
   std::vector<TargetPlate> plates;  ///< plates in identity mounting
-  int registration_frames = 32;     ///< number averaged at the highest contrast
+  int registration_frames = 32;     ///< number of frames averaged at the highest contrast to locate the plate
   /// Number averaged to measure the effective contrast, once for each plate, mounting and contrast.
   int contrast_frames = 16;
   double min_reference_px = 4;  ///< size of the smallest triangles that are used to measure the effective contrast
@@ -130,10 +130,10 @@ struct MeasurementResult {
   std::vector<Trial> trials;
   std::vector<Presentation> presentations;
   std::vector<SetUpRecord> set_ups;
-  std::vector<ContrastMeasurement> contrasts;    ///< in kelvin, one for each set-up and contrast
+  std::vector<ContrastMeasurement> contrasts;    ///< measured contrasts in kelvin, one for each set-up and contrast
   std::vector<JudgedContrast> judged_contrasts;  ///< filled if there are stages after the camera
   std::uint64_t frames_used = 0;
-  std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
+  std::map<std::string, std::uint64_t> frames_rejected;  ///< number of rejected frames by reason
   std::uint64_t frames_lost = 0;                         ///< number of frames missing in the sequence numbers
   /// Temporal noise of a pixel in one frame, from differences of successive frames of one presentation. 0: not
   /// measured.

@@ -73,13 +73,13 @@ struct MovingMeasurement {
   std::array<std::vector<MovingAnswer>, 2> answers_at_ends;
   std::vector<SetUpRecord> set_ups;
   double frame_rate_hz = 0;
-  double temporal_noise_k = 0;  ///< per pixel and frame
+  double temporal_noise_k = 0;  ///< temporal noise of a pixel in one frame
   std::map<std::string, std::uint64_t> frames_rejected;
   std::uint64_t frames_lost = 0, frames_used = 0;
   std::optional<Error> ended_by;   ///< reason for an early end; the passes and answers before it are valid
   std::vector<std::string> notes;  ///< also contains the notes about the plate at rest: target, contrasts, saturation
   std::vector<Presentation> presentations;  ///< presentations of the contrasts at rest, in the order of the run
-  RunConstancy constancy{};                 ///< from the averages of a plate at rest
+  RunConstancy constancy{};                 ///< data from the averages of the plate at rest
 };
 
 /// Events of a run, on the measuring thread. Every function may be empty. If a function returns an error, the run ends

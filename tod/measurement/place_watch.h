@@ -37,7 +37,7 @@ struct PlateSeen {
   /// Requested position.
   cv::Point2d asked_px;
   std::optional<cv::Point2d> seen_px;  ///< observed position in the frames; empty: too little contrast
-  cv::Point2d standard_error_px;       ///< of seen_px
+  cv::Point2d standard_error_px;       ///< standard error of seen_px
   cv::Point2d used_off_px{0, 0};       ///< position at which frames are judged minus the requested position
   double amplitude = 0;                ///< common contrast of the large triangles, in the unit of window_kelvin()
   /// Standard error of the amplitude. 0: not measured.

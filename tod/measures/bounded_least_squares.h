@@ -39,7 +39,7 @@ class BoundedLeastSquares {
   [[nodiscard]] std::vector<double> unscaled(std::vector<double> x) const;
 
   std::size_t n_;
-  std::vector<double> scale_, gram_, right_, low_, high_;  ///< of the scaled unknowns, x / scale
+  std::vector<double> scale_, gram_, right_, low_, high_;  ///< problem in scaled unknowns, x / scale
   State scaled_best_, best_;
   std::vector<double> slope_at_best_;  ///< half the gradient of q
 };

@@ -30,17 +30,17 @@ enum class DriftShape {
 /// One quantity over time.
 struct DriftFit {
   DriftShape shape = DriftShape::linear;
-  double change_k = 0;                    ///< from the first group to the last, according to the fit
+  double change_k = 0;                    ///< change from the first group to the last, according to the fit
   Interval change_ci95{};                 ///< in kelvin
-  std::optional<double> time_constant_s;  ///< of an approach
+  std::optional<double> time_constant_s;  ///< time constant of an approach; empty for a straight line
   Interval time_constant_ci95{};          ///< a side that the data do not determine is open
   double p_linear = 1;                    ///< p value of a straight line against an approach (F test)
-  std::vector<double> seen_k, fitted_k;   ///< by group
+  std::vector<double> seen_k, fitted_k;   ///< observed and fitted values of each group
 };
 
 /// Drift of a camera after a correction.
 struct DriftLaw {
-  std::vector<double> time_s;  ///< of the groups
+  std::vector<double> time_s;  ///< mean times of the groups
   /// Mean of the picture. Its interval allows for a random change of the mean that is due to the change of the pattern:
   /// standard deviation of the pattern's change divided by the root of the number of pixels.
   DriftFit level;

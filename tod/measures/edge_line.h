@@ -43,7 +43,7 @@ struct EdgeSample {
 
 /// Parabola through the offsets of the rows: its coefficients, and the standard uncertainty of the sag.
 struct RowTrend {
-  double mean = 0, slope = 0;  ///< per row
+  double mean = 0, slope = 0;  ///< mean offset, and slope per row
   double sag = 0, sag_u = 0;   ///< offset of the outermost rows minus offset of the middle row, without the slope
 };
 /// Fits the parabola by least squares.

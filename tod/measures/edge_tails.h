@@ -91,7 +91,8 @@ class TailFit {
   /// the MTF.
   [[nodiscard]] double least_wide_share() const { return farthest_wide_share(-1); }
   [[nodiscard]] double most_wide_share() const { return farthest_wide_share(1); }
-  [[nodiscard]] double noise() const { return noise_; }  ///< of a pixel, in the unit of the samples
+  /// Standard deviation of a pixel, in the unit of the samples.
+  [[nodiscard]] double noise() const { return noise_; }
   [[nodiscard]] std::size_t unknowns() const { return unknowns_; }
 
  private:

@@ -17,7 +17,7 @@ namespace todbench {
 
 /// Kinds of defects.
 enum class PixelDefect {
-  stuck,         ///< the same value in every frame
+  stuck,         ///< has the same value in every frame
   offset,        ///< dead or hot pixel: the deviation of its level in the flat field exceeds the limit
   unresponsive,  ///< dead pixel: the deviation of its response to temperature exceeds the limit
   noisy,
@@ -50,12 +50,12 @@ struct PixelScene {
 /// Defective pixels of a cube of frames.
 struct PixelDefects {
   int frames = 0;
-  std::array<cv::Mat1b, pixel_defect_kinds.size()> found;  ///< by kind: 255 for a defect
+  std::array<cv::Mat1b, pixel_defect_kinds.size()> found;  ///< 255 for each defect, by kind
   cv::Mat1b bad;                                           ///< any kind except substituted
   cv::Mat1b defective;                                     ///< any kind
   cv::Mat1i cluster;                      ///< size of the cluster of touching pixels, also diagonally; 0: not defective
   cv::Mat1d noise_sd;                     ///< temporal noise of each pixel, without the common part of rows and columns
-  cv::Mat1d mean_frame;                   ///< without the shading
+  cv::Mat1d mean_frame;                   ///< mean over the frames, minus the shading
   int response_tested = 0;                ///< number of pixels with a known response
   std::vector<std::string> not_tested{};  ///< sentences about kinds that cannot be detected in these frames
 

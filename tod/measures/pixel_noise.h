@@ -28,7 +28,7 @@ struct PixelNoise {
   double median_pixel_sd = 0;             ///< median of the pixels' standard deviations; insensitive to noisy pixels
   /// Variance of the mean frame over pixels, minus sd_rms^2 / T, the contribution of the temporal noise; signed.
   double fixed_pattern_variance = 0;
-  cv::Mat1d pixel_sd;    ///< of each pixel
+  cv::Mat1d pixel_sd;    ///< standard deviation of each pixel over time
   cv::Mat1d mean_frame;  ///< mean over time
 };
 

@@ -28,11 +28,11 @@ struct SignalTransfer {
   std::optional<double> chi2{};            ///< chi-square of the residuals with the stated uncertainties
   int degrees_of_freedom = 0;
   std::optional<double> p{};        ///< probability of a larger chi2 if the transfer is a straight line
-  double largest_residual = 0;      ///< in the unit of the signal
+  double largest_residual = 0;      ///< largest magnitude of a residual, in the unit of the signal
   double nonlinearity_percent = 0;  ///< largest residual divided by the span of the line between the outermost steps
   /// Coefficient of determination; not a measure of linearity: it is 0.9999 even for a nonlinearity of 1 %.
   double r_squared = 0;
-  std::vector<double> residuals{};  ///< of each step
+  std::vector<double> residuals{};  ///< residual of each step
 };
 
 /// Fits the line. Errors: `invalid_input` (fewer than three steps, steps without spread, a value that is not finite, an

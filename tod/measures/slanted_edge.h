@@ -23,7 +23,7 @@ enum class EdgeAxis {
 /// Tails fitted to the picture of a whole plate.
 struct PlateTails {
   TailFit fit;
-  TailColumns columns;  ///< at positions in the part that shows the edge
+  TailColumns columns;  ///< columns at positions in the part of the picture with the edge
   double step = 1;      ///< signed step of the picture for a unit step of the model
 };
 

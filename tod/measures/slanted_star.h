@@ -34,8 +34,8 @@ struct StarEdge {
   double normal_deg = 0;  ///< direction of the MTF, from +x towards +y, 0 to 180
   StarDirection direction = StarDirection::central;
   cv::Rect region{};                      ///< part of the picture that contains no other edge
-  std::optional<SlantedEdge> measured{};  ///< empty: rejected
-  std::string rejected{};                 ///< reason
+  std::optional<SlantedEdge> measured{};  ///< result of slanted_edge(); empty: rejected
+  std::string rejected{};                 ///< reason for the rejection; otherwise empty
 };
 
 /// Finds the edges on circles round the centre and measures each edge in its own region (slanted_edge()). Edges are in

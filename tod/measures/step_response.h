@@ -16,7 +16,7 @@ struct StepSeries {
   bool rising = true;
   std::size_t before = 0;      ///< number of samples taken before the step was requested, at least two
   std::vector<double> time_s;  ///< time of each frame by the camera's clock, increasing
-  std::vector<double> signal;  ///< in any linear unit
+  std::vector<double> signal;  ///< signal of each frame in any linear unit
 };
 
 /// Properties of camera and target.

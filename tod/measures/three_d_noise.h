@@ -55,7 +55,7 @@ class ByComponent {
 /// Analysis of variance of the table frames x rows x columns, one value per cell (Scheffé 1959, ch. 7).
 struct NoiseTable {
   int frames = 0, rows = 0, columns = 0;
-  ByComponent mean_squares;        ///< in the square of the frames' unit
+  ByComponent mean_squares;        ///< mean squares in the squared unit of the frames
   ByComponent degrees_of_freedom;  ///< t T-1, v V-1, h H-1, and their products
   /// First-order correlation rho of tvh in successive frames, for which the estimates are corrected; below 1. 0:
   /// analysis of variance with independent cells. If the noise has memory, its variance over T frames is too small, and
@@ -131,13 +131,14 @@ class NoiseCube {
   [[nodiscard]] Result<void> add_frame(const cv::Mat_<Pixel>& frame);
 
   int frames_ = 0;
-  cv::Mat1d first_;                               ///< first frame, the reference of every frame
-  cv::Mat1d change_;                              ///< sum over frames of (change - mean change of its frame)
-  double squares_ = 0;                            ///< sum of the squares of these changes
-  cv::Mat1d last_;                                ///< change of the last frame without its mean
-  std::vector<double> steps_;                     ///< mean square of each successive difference
-  std::vector<double> frame_means_;               ///< mean change of each frame
-  std::vector<double> row_means_, column_means_;  ///< of each frame in order, without the frame's mean
+  cv::Mat1d first_;                  ///< first frame, the reference of every frame
+  cv::Mat1d change_;                 ///< sum over frames of (change - mean change of its frame)
+  double squares_ = 0;               ///< sum of the squares of these changes
+  cv::Mat1d last_;                   ///< change of the last frame without its mean
+  std::vector<double> steps_;        ///< mean square of each successive difference
+  std::vector<double> frame_means_;  ///< mean change of each frame
+  /// Means of rows and columns of each frame in order, minus the mean of the frame.
+  std::vector<double> row_means_, column_means_;
 };
 
 }  // namespace todbench

@@ -46,7 +46,7 @@ struct AnswerCell {
 
 /// Result of goodness_of().
 struct Goodness {
-  std::array<MisfitTest, all_misfit_kinds.size()> tests{};  ///< by MisfitKind
+  std::array<MisfitTest, all_misfit_kinds.size()> tests{};  ///< one test for each MisfitKind
   /// Result of the joint test: share of replicates of the fitted model whose smallest p is at most the smallest
   /// observed p.
   double p = 1;

@@ -26,7 +26,7 @@ struct PersonFitOptions {
 
 /// Result of fit_person().
 struct PersonFit {
-  ObserverValues values{};  ///< by ObserverKey
+  ObserverValues values{};  ///< fitted values, by ObserverKey
   std::array<bool, observer_key_count> free{};
   /// 95 % intervals by profile likelihood (drop of 3.84 in twice ln likelihood). A side is open if the likelihood does
   /// not decrease so far within the domain. If the domain has a natural limit on this side (factor 1, lapse 0), the

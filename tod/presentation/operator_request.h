@@ -36,7 +36,7 @@ struct SetContrast {
 
 /// Step: move the plate by about this distance. The actual distance is measured.
 struct MoveSlightly {
-  cv::Point2d by_mm;  ///< as the camera sees the plate, x right, y down
+  cv::Point2d by_mm;  ///< shift as the camera sees the plate, x right, y down
   bool operator==(const MoveSlightly&) const = default;
 };
 

@@ -11,7 +11,7 @@ namespace todbench {
 
 /// Record of a presentation.
 struct Presentation {
-  std::int64_t presentation = 0;  ///< as in Trial; a repeated presentation keeps its number
+  std::int64_t presentation = 0;  ///< index as in Trial; a repeated presentation keeps its number
   TargetState set;                ///< requested state
   PresentedTarget said;           ///< reported state
   /// Effective contrast of the set-up at this set-point, as observed by the camera. Empty: not measured.

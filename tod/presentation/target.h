@@ -41,7 +41,7 @@ struct TargetState {
 
 /// State that an instrument reports once it is stable.
 struct PresentedTarget {
-  TargetState state;                               ///< as reached
+  TargetState state;                               ///< state that was reached
   std::optional<double> plate_temperature_k;       ///< temperature of the surround, if a sensor reports it
   std::optional<double> black_body_temperature_k;  ///< temperature behind the cut-outs
   double settling_s = 0;                           ///< time spent waiting

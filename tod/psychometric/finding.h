@@ -53,7 +53,7 @@ struct AdequacyFinding {
   FindingKind kind = FindingKind::deviance;
   std::optional<double> value{};  ///< observed value
   std::optional<double> limit{};  ///< limit beyond which the value is a finding
-  std::string sentence{};         ///< without a full stop
+  std::string sentence{};         ///< sentence for reports, without a full stop
   bool unfit = false;             ///< the result must not be used for a decision
   bool operator==(const AdequacyFinding&) const = default;
 };

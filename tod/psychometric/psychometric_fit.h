@@ -62,7 +62,7 @@ enum class FitVerdict {
 /// Options of a fit.
 struct FitOptions {
   PsychometricForm form = PsychometricForm::size;
-  std::optional<double> fixed_lapse = 0.0;  ///< empty: free in [0, 0.1]
+  std::optional<double> fixed_lapse = 0.0;  ///< fixed lapse; empty: free in [0, 0.1]
   bool with_posterior = true;
   bool graded = false;  ///< levels contain graded answers: their counts may be fractional
 };
@@ -126,7 +126,7 @@ inline constexpr std::array all_estimator_reasons{EstimatorReason::plan,        
 /// noise.
 struct ProportionTable {
   std::vector<double> size_mrad;           ///< increasing
-  std::vector<double> proportion_correct;  ///< at each size
+  std::vector<double> proportion_correct;  ///< proportion of correct answers at each size
   std::vector<double> standard_error;      ///< standard error of each proportion
   bool operator==(const ProportionTable&) const = default;
 };
@@ -161,10 +161,10 @@ struct PsychometricFit {
   /// interval contains the gap.
   bool slope_at_cap = false;
   double lapse = 0;
-  std::optional<double> log_likelihood;  ///< without binomial coefficients
+  std::optional<double> log_likelihood;  ///< ln likelihood without binomial coefficients
   std::optional<double> deviance;
   int degrees_of_freedom = 0;
-  std::optional<double> se_ln_threshold;  ///< from the observed information, not widened
+  std::optional<double> se_ln_threshold;  ///< standard error from the observed information, not widened
   std::optional<Posterior> posterior;
   double trials = 0;
   IntervalKind interval = IntervalKind::independent;
@@ -181,7 +181,8 @@ struct PsychometricFit {
   double lag_u = 0;       ///< part of joined_u due to the lag between the triangles while the contrast changes
   /// Ratio of the mean squared residual of graded answers to that of binary answers; empty for binary answers.
   std::optional<double> dispersion;
-  std::optional<TwinShapeUse> twin_shape;  ///< empty: a Weibull function
+  /// Result for the function of a twin; empty: a Weibull function was fitted.
+  std::optional<TwinShapeUse> twin_shape;
 
   /// Returns whether the verdict is ok or extrapolated, and ci95 has both limits.
   [[nodiscard]] bool usable() const;

@@ -22,7 +22,7 @@ struct Link {
   double ln_kappa = 0;
   double d_ln_kappa = 0;   ///< first derivative of ln kappa with respect to the lapse
   double d2_ln_kappa = 0;  ///< second derivative
-  double sign = 1;         ///< of u: +1 size, -1 acuity
+  double sign = 1;         ///< sign of u: +1 for the size form, -1 for the acuity form
 };
 /// Creates a link. Precondition: `lapse` in [0, 0.1].
 [[nodiscard]] Link make_link(PsychometricForm form, double lapse);

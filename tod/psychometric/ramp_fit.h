@@ -60,7 +60,7 @@ class RampFit {
   [[nodiscard]] std::vector<AnswerScore> scores(double centre) const;
 
   std::vector<RampAnswer> answers_;
-  std::vector<double> u_;  ///< of the answers
+  std::vector<double> u_;  ///< contrast_bend() of each answer
   ContrastSurface surface_;
   std::size_t powers_ = 3;      ///< number of parameters of the stretch
   std::size_t parameters_ = 3;  ///< number of parameters; the last one is that of the directions, if it is fitted

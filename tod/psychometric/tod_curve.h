@@ -74,7 +74,7 @@ struct TodPoint {
   int delta_t_measurements = 0;    ///< number of measurements; 0: not stated
   std::optional<double> delta_t_freedom{};  ///< degrees of freedom of delta_t_se_k; empty: measurements minus one
   std::vector<Level> levels;                ///< data of the fit: counts, one row per size and cluster
-  PsychometricFit fit;                      ///< in mrad
+  PsychometricFit fit;                      ///< fit with sizes in mrad
   /// Reason for a Weibull function or for the function of the twin; empty: not stated.
   std::optional<EstimatorReason> estimator_reason;
   std::optional<AnswersTaken> answers;            ///< empty: not stated

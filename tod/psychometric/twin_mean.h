@@ -27,7 +27,7 @@ class TwinMean {
 
   struct Value {
     double value = 0;
-    std::array<double, 4> gradient{};  ///< per unit of each parameter
+    std::array<double, 4> gradient{};  ///< derivative with respect to each parameter
   };
   /// Returns the value at ln(size / mrad).
   [[nodiscard]] Value at(double ln_size) const;
@@ -37,7 +37,7 @@ class TwinMean {
   TwinPlace place_;
   double share_ = 1;     ///< r
   double centre_ = 0;    ///< c
-  double d_centre_ = 0;  ///< per unit of lapse
+  double d_centre_ = 0;  ///< derivative of c with respect to the lapse
 };
 
 }  // namespace todbench

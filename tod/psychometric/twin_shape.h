@@ -23,7 +23,7 @@ class TwinShape {
 
   struct Value {
     double proportion = 0;
-    double derivative = 0;  ///< per unit of ln size
+    double derivative = 0;  ///< derivative per unit of ln size
   };
   /// Returns the value at ln(size / mrad).
   [[nodiscard]] Value at(double ln_size) const;
@@ -70,9 +70,10 @@ class TwinShape {
 /// ln threshold from graded answers according to the function of a twin, and the contribution of each answer.
 struct ShapeEstimate {
   double ln_threshold = 0;
-  std::vector<double> direction;  ///< by answer; the sum of the squares is the information about ln threshold
-  std::vector<double> weight;     ///< by answer: change of ln threshold per unit of its probability
-  std::vector<double> influence;  ///< by answer: weight times (its probability minus its mean)
+  /// One value per answer; the sum of the squares is the information about ln threshold.
+  std::vector<double> direction;
+  std::vector<double> weight;     ///< for each answer, change of ln threshold per unit of its probability
+  std::vector<double> influence;  ///< for each answer, weight times (probability minus mean)
 };
 
 /// Computes the quasi-likelihood estimate of fit_twin_shape(), with one parameter, or two if `with_slope`. Answers

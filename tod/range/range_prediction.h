@@ -60,8 +60,9 @@ struct RangePoint {
 
 /// Result of predict_range().
 struct RangePrediction {
-  std::optional<double> r75_m;  ///< empty if the target line does not intersect the TOD curve
-  Interval r75_ci95_m;          ///< from the intervals of the thresholds
+  /// Range at which the probability is 75 %; empty if the target line does not intersect the TOD curve.
+  std::optional<double> r75_m;
+  Interval r75_ci95_m;  ///< 95 % interval from the intervals of the thresholds
   /// R75 for the lowest and for the highest values of the spreads of the thresholds, low and high. This is not a
   /// confidence interval. Empty: a threshold has no spread, or one of the two curves has no range. A note states the
   /// reason.

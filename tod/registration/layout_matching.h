@@ -16,7 +16,7 @@ namespace todbench {
 /// Limits of the search for a layout.
 struct MatchLimits {
   double expected_scale_px_per_mm = 0;
-  double scale_range = 0.3;  ///< relative; wide enough to report a wrong scale instead of no match
+  double scale_range = 0.3;  ///< relative range of scales; wide enough to report a wrong scale instead of no match
   double rotation_range_deg = 20;
   cv::Size picture;
 };

@@ -45,7 +45,7 @@ struct Registration {
   double scale_px_per_mm = 0;  ///< scale along x in the middle of the plate, as scale_at()
   double pixel_aspect = 1;     ///< aspect stated in the options
   double rotation_deg = 0;     ///< clockwise in the picture
-  double scale_deviation = 0;  ///< relative to the expected scale
+  double scale_deviation = 0;  ///< relative deviation from the expected scale
   double contrast_sign = 1;    ///< +1: triangles warmer than their surround
   double blur_px = 0.45;       ///< standard deviation of the Gaussian that best fits the edges of the triangles
   PlateMapping mapping = PlateMapping::similarity;

@@ -29,7 +29,7 @@ struct AdaptiveOptions {
   /// Plates, mountings, contrasts, pixel size and costs of changes. `phases`: number of presentations of a contrast in
   /// a visit to a set-up.
   ConstantStimuliOptions stimuli;
-  std::vector<TargetPlate> plates;  ///< in identity mounting, with the sizes on each plate
+  std::vector<TargetPlate> plates;  ///< plates in identity mounting, with the sizes on each plate
   double distance_m = 0;
   FitOptions fit;  ///< options of the final fit
   /// Functions of the twin by contrast, if the final fit uses them. A contrast without an entry uses a Weibull
@@ -47,7 +47,8 @@ struct ContrastProgress {
   double delta_t_k = 0;
   double trials = 0;
   int presentations = 0;
-  std::optional<double> half_width_percent;  ///< empty while a side of the interval is open
+  /// Half-width of the interval; empty while a side of the interval is open.
+  std::optional<double> half_width_percent;
   bool settled = false;
   /// True if the contrast is not settled and at least three quarters of the variance are due to the measured contrast.
   /// Presentations in another set-up reduce this variance; presentations in the same set-up do not.

@@ -25,7 +25,7 @@ struct PhasedTriangle {
 
 /// Shifts of every group, in pixels, in [0, 1)^2.
 struct EvenPhases {
-  std::vector<std::vector<cv::Point2d>> shifts;  ///< per group
+  std::vector<std::vector<cv::Point2d>> shifts;  ///< shifts of each group
   cv::Point2d cell[2];  ///< sides of the lattice cell; shifting a group by a multiple of a side has no effect
 };
 
