@@ -28,7 +28,7 @@ class TemplateBank {
   [[nodiscard]] static Result<TemplateBank> build(const TemplateObserverSpec& spec, const Alternatives& alternatives,
                                                   double size_samples, int samples_per_pitch);
 
-  /// Returns the side of the square window, 2 m samples.
+  /// Returns the side of the square window in samples, 2 m.
   [[nodiscard]] int window_samples() const { return window_; }
   /// Returns the number of alternatives.
   [[nodiscard]] int alternatives() const { return alternatives_; }
@@ -72,10 +72,14 @@ class TemplateBank {
   TemplateBank() = default;
   void add_eye(const TemplateObserverSpec& spec, const Alternatives& alternatives, double size_samples,
                const FilterTable& filter);
+  /// Side of the window in samples, number of alternatives, and number of search positions per alternative.
   int window_ = 0, alternatives_ = 0, places_ = 0;
+  /// Number of blocks of templates.
   std::size_t blocks_ = 0;
+  /// Noise of the eye; null without an eye.
   std::shared_ptr<const EyeNoise> eye_;
-  std::vector<float> values_;  ///< [block of templates][sample][template in block]
+  /// Values of the templates: [block of templates][sample][template in block].
+  std::vector<float> values_;
 };
 
 }  // namespace todbench

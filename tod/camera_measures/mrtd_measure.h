@@ -100,8 +100,8 @@ struct BarPair {
 /// Returns the rectangles that are not part of a group of five bars.
 [[nodiscard]] std::vector<PlateRectangle> spots_of(const TargetPlate& plate);
 
-/// Shows a state of the target and waits until frames of this state can be taken. Calls `work` first; frames that
-/// arrive during `work` are read from the camera.
+/// Calls `work`, then shows a state of the target and waits until frames of this state can be taken. Frames that arrive
+/// during `work` are read from the camera.
 using ShowState = std::function<Result<PresentedTarget>(const TargetState&, const std::function<void()>& work)>;
 
 /// A state that the measurement shows. In each mounting, the first state has the contrast at which the plate is

@@ -84,12 +84,12 @@ inline constexpr double transfer_systematic_u = 0.01;
 inline constexpr double transfer_false_alarm = 0.005;
 
 /// Returns the relative change of the signal transfer between the first set-ups and the later set-ups. Every division
-/// of the run into first and later set-ups is tested, and the one with the largest ratio of change to limit is
-/// returned. A set-up with several contrasts contributes the difference of its lowest and highest contrast for each
-/// triangle. In this difference, fixed pattern, row noise and column noise cancel. For a set-up with one contrast, the
-/// error includes a pattern common to its triangles, as large as the scatter of one triangle. A set-up is excluded if
-/// its contrasts span less than half of the widest span. The error contains the pooled scatter of the triangles within
-/// the set-ups (Student's t) and transfer_systematic_u. The probability of a false alarm is shared among the divisions.
+/// of the run into first and later set-ups is tested. The change with the largest ratio to its limit is returned. A
+/// set-up with several contrasts contributes the difference of its lowest and highest contrast for each triangle. In
+/// this difference, fixed pattern, row noise and column noise cancel. For a set-up with one contrast, the error
+/// includes a pattern common to its triangles, as large as the scatter of one triangle. A set-up is excluded if its
+/// contrasts span less than half of the widest span. The error contains the pooled scatter of the triangles within the
+/// set-ups (Student's t) and transfer_systematic_u. The probability of a false alarm is shared among the divisions.
 /// Empty with fewer than two set-ups, or if no set-up has two triangles.
 [[nodiscard]] std::optional<ConstancyFigure> transfer_change(std::span<const ContrastMeasurement> measurements);
 

@@ -69,6 +69,7 @@ struct SeenContrast {
 /// outlive the object.
 class SetUpStep {
  public:
+  /// `note`: called with each note, for example about saturation.
   SetUpStep(const MeasurementOptions& options, const FrameSource& camera, FrameTaker& taker,
             std::function<void(const std::string&)> note)
       : options_(options), camera_(camera), taker_(taker), note_(std::move(note)) {}
@@ -117,7 +118,9 @@ class SetUpStep {
 
   /// Returns the temporal noise per pixel and frame, from differences of successive frames; 0: not measured.
   [[nodiscard]] double temporal_noise_k() const { return temporal_noise_k_; }
+  /// Returns the temporal noise in steps of the counts, near the surround; empty: not measured.
   [[nodiscard]] std::optional<double> noise_counts() const { return noise_counts_; }
+  /// Returns the lag-1 correlation of the noise; empty: too few frames.
   [[nodiscard]] std::optional<double> lag1_correlation() const { return lag1_correlation_; }
 
   /// Returns the data for the tests of whether the camera remained constant, from the averages taken until now.
@@ -150,8 +153,8 @@ class SetUpStep {
   FrameTaker& taker_;
   std::function<void(const std::string&)> note_;
   SaturationWatch saturation_, saturation_behind_;
-  std::map<std::string, double>
-      learnt_response_;  ///< response by plate; replaces MeasurementOptions::contrast_response
+  /// Response by plate. It replaces MeasurementOptions::contrast_response.
+  std::map<std::string, double> learnt_response_;
   double temporal_noise_k_ = 0;
   /// Noise of a pixel in one frame. It exceeds temporal_noise_k_ if the noise has memory, because differences of
   /// successive frames contain only a part of such noise.

@@ -36,7 +36,7 @@ class LinkTable {
 
 /// Table of the ln likelihood of one set of counts with one link. One polynomial combines the correct and the wrong
 /// answers of a level, so a value takes a third of the time of LinkTable. Construction takes 1 us per level; use this
-/// table for several hundred values or more. The arguments of the constructor must outlive the object.
+/// table for several hundred values or more.
 class CountsTable {
  public:
   /// Computes the table. The arguments must outlive the object.
@@ -73,9 +73,10 @@ struct ScanNode {
 };
 /// Result of scan_likelihood().
 struct LikelihoodScan {
-  std::vector<ScanNode>
-      nodes;  ///< for each slope of the grid, the point with the highest likelihood over threshold and lapse
-  std::vector<ScanNode> peaks;  ///< local maxima over threshold and slope, as further starting points of Newton steps
+  /// For each slope of the grid, the point with the highest likelihood over threshold and lapse.
+  std::vector<ScanNode> nodes;
+  /// Local maxima over threshold and slope, as further starting points of Newton steps.
+  std::vector<ScanNode> peaks;
 };
 /// Scans the whole domain. The spacing of the thresholds is a fixed part of the width of the function at each slope.
 /// Thresholds are placed around every level, between neighbouring levels, below the lowest level and above the highest

@@ -66,11 +66,11 @@ inline constexpr double contrast_decides = 0.75;
 /// the highest contrast, at which the plate is registered. The contrasts that are not settled follow. A contrast is
 /// settled when three conditions are met, also within a visit: at least 40 trials of three sizes in eight
 /// presentations; a two-sided interval with a half-width below the target; and a fit that the data do not contradict
-/// (deviance, p > 0.001). Graded answers have no deviance, and their interval is that of fit_graded(). If the interval
-/// includes the errors of the measured contrasts, and these errors alone exceed the target, the contrast is settled
-/// after two visits of each set-up. The run ends when all contrasts are settled, or at max_presentations. The shifts of
-/// a visit are those of even_phases() over the mountings of its plate. In each further visit to a set-up, the shifts
-/// are between those of earlier visits.
+/// (deviance, p > 0.001). Graded answers have no deviance, and their interval is computed from their own scatter. If
+/// the interval includes the errors of the measured contrasts, and these errors alone exceed the target, the contrast
+/// is settled after two visits of each set-up. The run ends when all contrasts are settled, or at max_presentations.
+/// The shifts of a visit are those of even_phases() over the mountings of its plate. In each further visit to a set-up,
+/// the shifts are between those of earlier visits.
 class AdaptiveSchedule final : public TrialSchedule {
  public:
   AdaptiveSchedule(AdaptiveOptions options, const RandomStream& stream);

@@ -17,7 +17,7 @@ struct PsiOptions {
   double first_size = 1;
   double last_size = 10;
   double size_step = 0.05;  ///< step of the candidate sizes, in ln
-  /// Lapse of the model for the selection. It prevents that a single wrong answer excludes the true threshold.
+  /// Lapse of the model for the selection. With this lapse, a single wrong answer does not exclude the true threshold.
   double selection_lapse = 0.01;
   /// Share of trials at 2.5 times the threshold, where only a lapse causes a wrong answer.
   double lapse_probe_share = 0.05;
