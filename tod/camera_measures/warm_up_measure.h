@@ -18,9 +18,9 @@ namespace todbench {
 /// Options of measure_warm_up().
 struct WarmUpOptions {
   double duration_s = 600;         ///< duration of the observation, > 0
-  double start_s = 0;              ///< time of the first image since power-on; all times count from power-on
-  double frame_rate_hz = 0;        ///< stated by the camera; 0: not stated
-  double stable_k_per_min = 0.05;  ///< the level is stable once its drift is slower than this, > 0
+  double start_s = 0;              ///< time from power-on to the first image; all times are measured from power-on
+  double frame_rate_hz = 0;        ///< frame rate that the camera states; 0: not stated
+  double stable_k_per_min = 0.05;  ///< drift below which the level is stable, > 0
 };
 
 /// Successive frames of a uniform scene, in kelvin of the camera's scale.

@@ -35,15 +35,15 @@ struct OwnFunctions {
 /// Estimates the ratio of acuities camera / twin from the difference of ln S75. ln S75 of camera and twin is fitted by
 /// quasi-likelihood with the same function `table` (twin_shape.h), each with its own slope if `with_slope`. For each
 /// answer, the contributions to the two values are subtracted. The variance of these differences over set-ups, or over
-/// presentations and places, is the variance of the result (clustered_variance.h). To first order, two errors have no
-/// effect on the difference and on its interval: the error of the function, and the variation common to camera and twin
-/// (the phase of a presentation). Precondition: camera and twin have independent noise, because common noise would
+/// presentations and positions, is the variance of the result (clustered_variance.h). To first order, two errors have
+/// no effect on the difference and on its interval: the error of the function, and the variation common to camera and
+/// twin (the phase of a presentation). Precondition: camera and twin have independent noise, because common noise would
 /// cancel as well.
 ///
 /// The twin is simulated at the contrast that the camera measured once in each set-up. The variance over set-ups
 /// therefore contains the scatter of this contrast, except for the part common to all set-ups. This part
-/// (`contrast.shared_se_ln_acuity`) is added. The variance over presentations and places does not contain the scatter,
-/// so `contrast.se_ln_acuity` is added.
+/// (`contrast.shared_se_ln_acuity`) is added. The variance over presentations and positions does not contain the
+/// scatter, so `contrast.se_ln_acuity` is added.
 ///
 /// `draws` is stored in the result. The verdict is that of compare(), with Student's t. Errors: `invalid_input` (as
 /// twin_shape_estimate(), fewer than two clusters, a margin that is not positive, probabilities outside 0 to 1).

@@ -70,7 +70,7 @@ struct RunConstancy {
 struct ConstancyFigure {
   /// Observed value, signed.
   double value = 0;
-  /// Limit of the magnitude of the value.
+  /// Largest magnitude of the value that is not a finding.
   double limit = 0;
   /// Returns whether the magnitude of the value is above the limit.
   [[nodiscard]] bool beyond() const { return value > limit || value < -limit; }

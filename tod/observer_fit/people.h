@@ -27,7 +27,7 @@ struct PeopleSpread {
 struct PersonEstimate {
   double value = 0, se = 0;
 };
-/// Returns the random-effects estimate. The values are used without a transformation, and so are the results.
+/// Returns the random-effects estimate. Neither the values nor the results are transformed.
 [[nodiscard]] PeopleSpread spread_over(std::span<const PersonEstimate> estimates);
 /// Returns the spread of one parameter among people.
 [[nodiscard]] PeopleSpread people_spread(std::span<const PersonFit> people, std::size_t key);

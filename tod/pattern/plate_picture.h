@@ -12,7 +12,7 @@ namespace todbench {
 /// Pixels of a display.
 struct DisplayGeometry {
   cv::Size size_px;
-  double pixel_mm = 1;  ///< centre to centre, square
+  double pixel_mm = 1;  ///< distance between the centres of neighbouring pixels, equal along x and y
 };
 
 /// Draws a plate with the level `pattern` inside triangles and rectangles and `ground` elsewhere. A pixel has the mean

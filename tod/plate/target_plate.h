@@ -24,7 +24,7 @@ struct PlateTriangle {
 /// A cut-out for measures other than TOD: an edge or a bar.
 struct PlateRectangle {
   std::string name;         ///< unique on the plate
-  cv::Point2d position_mm;  ///< position of its middle, as for a triangle
+  cv::Point2d position_mm;  ///< position of the middle, relative to the middle of the plate as for a triangle
   cv::Size2d size_mm;       ///< before rotation
   double angle_deg = 0;     ///< clockwise rotation
 };

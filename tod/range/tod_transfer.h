@@ -17,7 +17,7 @@ namespace todbench {
 /// of ln(A / A0) between two levels; A0 is the acuity at the highest contrast of the curve, its asymptote. A published
 /// parameter set is never changed; a change gets a new name.
 struct TodTransfer {
-  std::string_view name;      ///< versioned
+  std::string_view name;      ///< versioned name
   std::string_view observer;  ///< observer who judged triangles and bars; the transfer is valid only for this observer
   /// A phrase that states the imagers, the observer and the definition of the threshold for bars.
   std::string_view source;

@@ -35,7 +35,7 @@ struct PlateAttempt {
   std::vector<PlateTriangle> large;
   LayoutMatch match;
   std::vector<PlateTriangle> located;  ///< triangles with the stated orientation
-  std::vector<cv::Point2d> pixels;     ///< their centroids
+  std::vector<cv::Point2d> pixels;     ///< centroids of these triangles in the picture
   int judged = 0;                      ///< large triangles whose orientation could be determined
   double blur_px = first_blur_px;
   [[nodiscard]] int pairs() const { return static_cast<int>(match.pairs.size()); }

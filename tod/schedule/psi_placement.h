@@ -13,8 +13,9 @@ namespace todbench {
 /// Options of PsiPlacement.
 struct PsiOptions {
   PsychometricForm form = PsychometricForm::size;
-  /// First_size and last_size: limits of the prior of the threshold, which is uniform in ln threshold; > 0.
+  /// Lower limit of the prior of the threshold, which is uniform in ln threshold; > 0.
   double first_size = 1;
+  /// Upper limit of the prior of the threshold.
   double last_size = 10;
   double size_step = 0.05;  ///< step of the candidate sizes, in ln
   /// Lapse of the model for the selection. With this lapse, a single wrong answer does not exclude the true threshold.
