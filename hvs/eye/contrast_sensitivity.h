@@ -11,22 +11,22 @@ namespace todbench {
 struct EyeParameters {
   double sensitivity = 1202;            ///< K: d' per unit contrast per degree, detection
   double photon_noise_td = 575;         ///< E0: retinal illuminance at which photon noise equals neural noise
-  double inhibition_per_degree = 7.36;  ///< u0: upper end of lateral inhibition, cycles per degree
+  double inhibition_per_degree = 7.36;  ///< u0: highest frequency of lateral inhibition, cycles per degree
   double critical_cycles = 3.44;        ///< n_c: detection sums over an area of pi (n_c / u)^2
   double area_exponent = 0.284;         ///< gamma: growth of the effective area beyond the critical area
-  double uncertainty_channels = 500;  ///< M: number of channels among which the person does not know the relevant ones
-  double contrast_noise = 0.03;       ///< kappa: noise proportional to the response to the target
+  double uncertainty_channels = 500;    ///< M: number of channels among which the person searches for the relevant one
+  double contrast_noise = 0.03;         ///< kappa: noise proportional to the response to the target
   double age_years = 30;
-  double field_deg2 = 30;  ///< area of the adapting field, for the pupil
+  double field_deg2 = 30;  ///< area of the adapting field, from which the pupil size is computed
   bool operator==(const EyeParameters&) const = default;
 };
 
-/// Checks the parameters. Error: `invalid_input` with the parameter that is out of its range.
+/// Checks the parameters. Error: `invalid_input`, with the name of the parameter that is out of range.
 [[nodiscard]] Result<void> validate(const EyeParameters& eye);
 
-/// Returns the d' that a detector of `channels` equally sensitive channels needs for 84 % correct answers in
-/// two-alternative forced choice. The detector chooses the largest response (Pelli 1985). 1.41 for one channel, 3.73
-/// for 500. `channels` may be fractional, at least 1. Error about 1e-6.
+/// Returns the d' at which a detector with `channels` equally sensitive channels has 84 % correct answers in a
+/// two-alternative forced choice. The detector chooses the largest response (Pelli 1985). The result is 1.41 for one
+/// channel and 3.73 for 500 channels. `channels` may be fractional, at least 1. The numerical error is about 1e-6.
 [[nodiscard]] double detection_d_prime(double channels);
 
 /// The filter H of an eye adapted to a luminance. Immutable, thread-safe.
@@ -40,12 +40,12 @@ class EyeFilter {
   /// square degree. It is 0 at frequency 0 and from the diffraction limit upwards.
   [[nodiscard]] double detection_power(double frequency_per_degree) const;
   /// Returns H^2 for identification: the detection power times (d'(M) / d'(1))^2 with M channels of uncertainty. The
-  /// fit of detection includes the uncertainty, but an observer that searches explicitly has less uncertainty.
+  /// factor is needed because the parameters were fitted to detection data, which include the uncertainty. An observer
+  /// that searches explicitly has less uncertainty.
   [[nodiscard]] double identification_power(double frequency_per_degree) const {
     return identification_gain_ * detection_power(frequency_per_degree);
   }
-  /// Returns d' of a Gabor pattern of contrast 1: frequency in cycles per degree, Gaussian envelope exp(-r^2 / (2
-  /// sigma^2)).
+  /// Returns d' of a Gabor pattern of contrast 1 with the Gaussian envelope exp(-r^2 / (2 sigma^2)).
   [[nodiscard]] double gabor_d_prime(double frequency_per_degree, double sigma_deg) const;
 
  private:

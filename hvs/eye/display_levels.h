@@ -9,15 +9,17 @@
 
 namespace todbench {
 
-/// Luminance contrast of every level relative to the background, which is in the middle of the luminance range.
-/// Includes the veil. In increasing order.
+/// Luminance contrasts of all levels relative to the background, in increasing order. The background is in the middle
+/// of the luminance range. The contrasts include the veil.
 using LevelContrasts = std::array<double, 256>;
-/// Returns the contrasts.
+/// Returns the luminance contrasts of all levels of a display.
 [[nodiscard]] LevelContrasts level_contrasts(const ViewedDisplay& display);
 
-/// The level below a contrast, the fraction of the way to the next level, and the difference of contrast between both.
+/// Position of a contrast between two levels.
 struct BetweenLevels {
+  /// Index of the lower level.
   int below = 0;
+  /// Position between the lower level (0) and the next level (1), and the contrast difference of these two levels.
   double share = 0, step = 0;
 };
 /// Finds the two levels on either side of a contrast.
@@ -29,7 +31,7 @@ struct BetweenLevels {
 /// are enlarged to `zoom` pixels by the interpolation of the display. Values beyond black and white are clipped.
 [[nodiscard]] cv::Mat1b operator_picture(const ViewedDisplay& display, const cv::Mat1d& kelvin, double contrast_k);
 
-/// Returns the level of the background: the one nearest to the middle of the luminance range.
+/// Returns the level of the background. It is the level nearest to the middle of the luminance range.
 [[nodiscard]] int background_level_of(const ViewedDisplay& display);
 
 }  // namespace todbench

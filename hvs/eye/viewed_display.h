@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The display of the operator as a part of the chain: angle of a displayed sample, luminance, contrast, blur.
+// Display of the operator: angle of a displayed sample, luminance, contrast and blur.
 #pragma once
 
 #include <array>
@@ -15,7 +15,7 @@ namespace todbench {
 /// Interpolation that fills the display pixels between the samples of an enlarged picture.
 enum class DisplayInterpolation {
   hold,    ///< a sample is a square of zoom x zoom pixels
-  linear,  ///< bilinear
+  linear,  ///< bilinear interpolation between the samples
 };
 inline constexpr std::array all_display_interpolations{DisplayInterpolation::hold, DisplayInterpolation::linear};
 [[nodiscard]] constexpr std::string_view to_string(DisplayInterpolation interpolation) {
@@ -25,8 +25,8 @@ inline constexpr std::array all_display_interpolations{DisplayInterpolation::hol
 /// A display at a viewing distance. The background of the target is shown in the middle of the luminance range.
 struct ViewedDisplay {
   double pixel_pitch_mm = 0;      ///< 0: computed from diagonal and pixels
-  double diagonal_in = 0;         ///< of the picture area, square pixels
-  std::vector<double> pixels{};   ///< columns and rows
+  double diagonal_in = 0;         ///< diagonal of the picture area in inches; the pixels are square
+  std::vector<double> pixels{};   ///< number of columns and number of rows
   double viewing_distance_m = 0;  ///< eye to display
   double luminance_white_cd_m2 = 0;
   double luminance_black_cd_m2 = 0;
@@ -36,37 +36,37 @@ struct ViewedDisplay {
   double zoom = 1;                        ///< display pixels per displayed sample, along an axis
   DisplayInterpolation interpolation = DisplayInterpolation::hold;
   double spot_mm = 0;     ///< standard deviation of a Gaussian spot (CRT); 0: sharp pixels (LCD)
-  double contrast = 0.5;  ///< luminance contrast at which the operator shows every target; unused with span_k
+  double contrast = 0.5;  ///< luminance contrast to which the operator sets every target; unused with span_k
   double span_k = 0;      ///< kelvin from black to white at a fixed gain; 0: the operator sets the gain
   bool operator==(const ViewedDisplay&) const = default;
 };
 
-/// Checks a display. Error: `invalid_input`: one sentence with the key, e.g. for a distance in mm, a luminance of 0, a
-/// decreasing table, or a contrast that cannot be shown.
+/// Checks a display. Error: `invalid_input` with the key (for example a distance in mm, a luminance of 0, a decreasing
+/// table, or a contrast that cannot be shown).
 [[nodiscard]] Result<void> validate(const ViewedDisplay& display);
 
-/// Returns the distance of two display pixels in mm. Precondition of this and of all following functions: validate()
-/// succeeds.
+/// Returns the distance between the centres of neighbouring display pixels, in mm. Precondition of this function and of
+/// all following functions: validate() succeeds.
 [[nodiscard]] double pixel_pitch_mm(const ViewedDisplay& display);
 /// Returns the luminance at a level from 0 to 1, without veil.
 [[nodiscard]] double luminance_cd_m2(const ViewedDisplay& display, double level);
 /// Returns the angle of a displayed sample at the eye, in arcmin.
 [[nodiscard]] double arcmin_per_sample(const ViewedDisplay& display);
-/// Returns the luminance of the background, to which the eye adapts, in cd/m2: the middle of the range, including the
-/// veil.
+/// Returns the luminance of the background, to which the eye adapts, in cd/m2. It is the middle of the luminance range
+/// plus the veil.
 [[nodiscard]] double adaptation_luminance_cd_m2(const ViewedDisplay& display);
-/// Returns the largest luminance contrast (target minus background, divided by background) that can be shown in both
-/// directions.
+/// Returns the largest luminance contrast (target minus background, divided by background) that can be shown with both
+/// signs.
 [[nodiscard]] double largest_contrast(const ViewedDisplay& display);
 /// Returns the luminance contrast of a target of `delta_t_k` kelvin, without sign. With a fixed gain it is the mean of
 /// a hot and a cold target. Error: `invalid_input` if the display cannot show it.
 [[nodiscard]] Result<double> luminance_contrast(const ViewedDisplay& display, double delta_t_k);
-/// Returns the same for any contrast. A contrast that cannot be shown is replaced by the largest contrast that can.
+/// Returns luminance_contrast(), or the largest contrast that can be shown if the contrast exceeds it.
 [[nodiscard]] double shown_contrast(const ViewedDisplay& display, double delta_t_k);
-/// Returns the transfer of the display at (u, w) cycles per displayed sample: hold or interpolation, and spot. Real and
-/// even.
+/// Returns the transfer of the display at (u, w) cycles per displayed sample. It includes interpolation and spot, and
+/// is real and even.
 [[nodiscard]] double display_transfer(const ViewedDisplay& display, double u, double w);
-/// Returns a sentence if a displayed sample is so small (below 2 arcmin) that the eye limits a test; empty otherwise.
+/// Returns a warning if a displayed sample is below 2 arcmin, because the eye then limits the test. Otherwise empty.
 [[nodiscard]] std::optional<std::string> small_sample_warning(const ViewedDisplay& display);
 
 }  // namespace todbench

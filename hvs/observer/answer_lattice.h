@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Probabilities of an observer's answers to given patches, as a smooth function of its blur and its own noise.
+// Probabilities of an observer's answers to given patches, as a smooth function of the blur and the internal noise of
+// the observer.
 #pragma once
 
 #include <array>
@@ -17,7 +18,7 @@ namespace todbench {
 
 /// A patch with a recorded answer.
 struct AnsweredPatch {
-  cv::Mat1f kelvin;       ///< square, an even number of samples on a side, centred in the window
+  cv::Mat1f kelvin;       ///< square with an even number of samples on a side; centred in the observer's window
   double contrast_k = 0;  ///< effective, with its sign
   double noise_k = 0;     ///< temporal noise of the sensor, sd per sample
   double size_samples = 0;
@@ -30,36 +31,38 @@ struct AnswerLogProbabilities {
   std::array<double, max_alternatives> value{};
 };
 
-/// Probabilities of a template observer's answers to patches, averaged over the observer's own noise. They are
-/// available for any blur sigma and any standard deviation s of that noise per sample (relative to the contrast).
+/// Probabilities of a template observer's answers to patches, averaged over the internal noise of the observer. They
+/// are computed for any blur sigma and any standard deviation s of this noise per sample (relative to the contrast).
 ///
-/// Values are computed at the nodes of a lattice in ln sigma and ln s. One white noise z of a window is drawn for all
-/// patches of a size and all nodes; the score of template t is <T_t, g> + s <T_t, z>. The component of z along the
-/// difference of the two best templates is integrated in closed form (conditioning, Owen 2013, 8.7). The largest score
-/// of an alternative is a convex function of that component. It is approximated as piecewise linear between 19 points
-/// half a standard deviation apart. The probability of each range in which an alternative is best follows from the
-/// normal distribution. Each z is used with both signs. So that no probability is 0, half a draw is added, weighted
-/// with the probability that the alternative's best template wins. Between the nodes ln p is interpolated by monotone
-/// cubics (Steffen 1990), first along s, then along sigma. The probabilities are then normalised to a sum of 1.
+/// Values are computed at the nodes of a lattice in ln sigma and ln s. The same draws of white noise z in the window
+/// are used for all nodes and for all patches of one size. The score of template t is <T_t, g> + s <T_t, z>. The
+/// component of z along the difference of the two best templates is integrated in closed form (conditioning, Owen 2013,
+/// 8.7). The largest score of an alternative is a convex function of this component. The function is approximated as
+/// piecewise linear between 19 points at distances of half a standard deviation. The probability of each range in which
+/// an alternative has the largest score is computed from the normal distribution. Each z is used with both signs. To
+/// avoid probabilities of 0, half a draw is added. Its weight is the probability that the best template of the
+/// alternative has the largest score. Between the nodes, ln p is interpolated by monotone cubics (Steffen 1990), first
+/// along s, then along sigma. The probabilities are then normalised to a sum of 1.
 ///
-/// With an eye the two coordinates are the standard deviations of the observer's two noises: noise of the eye in a
-/// score (EyeNoise::sd()) and white noise per sample. Up to a common factor, the covariance of the scores depends only
-/// on the ratio of the two, so nodes of equal ratio share their draws. The computation is otherwise the same.
+/// With an eye the two coordinates are standard deviations: that of the eye's noise in a score (EyeNoise::sd()), and
+/// that of the white noise per sample. Except for a common factor, the covariance of the scores depends only on the
+/// ratio of these two, so nodes with equal ratios share their draws. Otherwise the computation is unchanged.
 ///
 /// Nodes are computed on first use. One thread at a time.
 class AnswerLattice {
  public:
   struct Options {
-    int draws = 384;  ///< number of noise vectors, even: half of them are drawn, the others are these with the opposite
-                      ///< sign
+    /// Number of noise vectors, even. Half of them are drawn; the other half are the same vectors with the opposite
+    /// sign.
+    int draws = 384;
     std::uint64_t seed = 1;
   };
   static constexpr double least_sigma = 0.15, most_sigma = 3;    ///< displayed samples
   static constexpr double least_noise = 0.005, most_noise = 10;  ///< sd per sample, relative to the contrast
 
-  /// Creates a lattice with the search and the window of `spec`. Error: `invalid_input` with the number of the patch,
-  /// counted from 1 (not square, smaller than the observer's window, not finite, contrast of 0, negative noise, or a
-  /// size that the observer cannot judge).
+  /// Creates a lattice with the search and the window of `spec`. Error: `invalid_input` with the number of the invalid
+  /// patch, counted from 1. A patch is invalid if it is not square, smaller than the observer's window or not finite,
+  /// or has a contrast of 0, negative noise or a size that the observer cannot judge.
   [[nodiscard]] static Result<AnswerLattice> create(const TemplateObserverSpec& spec, const Alternatives& alternatives,
                                                     std::vector<AnsweredPatch> patches, const Options& options);
   AnswerLattice(AnswerLattice&&) noexcept;
@@ -70,8 +73,8 @@ class AnswerLattice {
   [[nodiscard]] int alternatives() const;
   [[nodiscard]] const AnsweredPatch& patch(std::size_t index) const;
 
-  /// Returns ln p of each alternative of a patch. Outside the domain it returns the value at the edge. `first`: sigma
-  /// of the blur in samples, or with an eye the noise of the eye in a score.
+  /// Returns ln p of each alternative for a patch. `first`: sigma of the blur in samples; with an eye, the noise of the
+  /// eye in a score. Values outside the domain are replaced by the nearest limit.
   [[nodiscard]] AnswerLogProbabilities log_probabilities(std::size_t patch, double first, double noise);
   [[nodiscard]] bool has_eye() const;
   /// Returns the noise of the eye in a score of this patch, for an eye with `gain` times the sensitivity. Precondition:

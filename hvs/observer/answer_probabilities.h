@@ -20,18 +20,19 @@ struct AnswerRoom {
   std::span<float> direction;  ///< ScoreNoise::rank() elements
 };
 
-/// Returns the probability that each alternative has the largest score. `scores`: the bank's scores of the patch
-/// without the noise; `levels`: standard deviations of the noise, in the same unit.
+/// Returns the probability that each alternative has the largest score. `scores`: scores of the patch without the
+/// noise, as computed by the bank; `levels`: standard deviations of the noise, in the unit of the scores.
 ///
-/// Without noise the best alternative has probability 1; equally good alternatives share it. With noise, a template is
-/// considered only if it is within five standard deviations of the best one: score_best - score < 5 sd sqrt(2 (1 -
-/// rho)), where rho is the correlation of the two scores. If only one alternative remains, it has probability 1 (error
-/// below 3e-7 for each omitted template).
+/// Without noise the alternative with the largest score has probability 1; alternatives with equal scores share it.
+/// With noise, a template is considered only if its score is within five standard deviations of the largest score:
+/// score_best - score < 5 sd sqrt(2 (1 - rho)), where rho is the correlation of the two scores. If only one alternative
+/// remains, its probability is 1 (error below 3e-7 for each omitted template).
 ///
-/// Otherwise the noise is drawn at random in the directions perpendicular to the difference of the two best
-/// alternatives' templates. Along this difference, where the decision varies most, it is drawn in eight strata of equal
-/// probability, one value in each (conditional and stratified sampling, Owen 2013, 8.7 and 8.4). `draws` is rounded up
-/// to a multiple of eight, at least 32. Allocates no memory. Results are bit-identical on every instruction set.
+/// Otherwise the noise is drawn. The decision depends most on the noise component along the difference of the templates
+/// of the two best alternatives. This component is drawn in eight strata of equal probability, one value in each
+/// stratum. The perpendicular components are drawn at random (conditional and stratified sampling, Owen 2013, 8.7 and
+/// 8.4). `draws` is rounded up to a multiple of eight, at least 32. Allocates no memory. Results are bit-identical on
+/// every instruction set.
 [[nodiscard]] AnswerProbabilities answer_probabilities(const ScoreNoise& noise, std::span<const float> scores,
                                                        const ScoreNoiseLevels& levels, const RandomStream& stream,
                                                        int draws, const AnswerRoom& room);

@@ -13,10 +13,10 @@ void block_product(const float* values, const float* factors, std::size_t count,
 
 /// Number of sets of factors in one call of add_block_products().
 inline constexpr std::size_t products_at_once = 4;
-/// Continues the sums of block_product() for several sets of factors. The values are read only once. If the sums start
-/// at 0 and the calls cover successive parts of values and factors, the result is bit-identical to block_product(). A
-/// caller with many sets should pass short parts to all of them, so that the values come from the nearest cache and not
-/// from memory.
+/// Adds the products of block_product() to the sums of several sets of factors. The values are read only once. If the
+/// sums start at 0 and the calls cover successive parts of values and factors, the result is bit-identical to
+/// block_product(). With many sets of factors, use short parts and process all sets for one part before the next part,
+/// so that the values stay in the cache.
 void add_block_products(const float* values, const std::array<const float*, products_at_once>& factors,
                         std::size_t count, const std::array<float*, products_at_once>& sums);
 

@@ -15,7 +15,7 @@ namespace todbench {
 /// Templates of an observer with an eye, as continuous patterns.
 struct EyeTemplates {
   Alternatives shapes{};      ///< alternatives at the target's size, in displayed samples
-  int steps = 8;              ///< search places per sample
+  int steps = 8;              ///< search positions per sample
   int reach = 8;              ///< search steps in each direction
   double sample_deg = 0;      ///< side of a displayed sample
   double contrast_noise = 0;  ///< kappa
@@ -23,34 +23,35 @@ struct EyeTemplates {
   ViewedDisplay display;
 };
 
-/// White noise of 1 per square degree behind the eye's filter H. The scores of templates i and j have the covariance
-/// G_ij = <H F_i, H F_j>, where F is the target behind the display. G_ii is d'^2 of the ideal target at contrast 1.
-/// Noise proportional to the contrast multiplies the standard deviation by sqrt(1 + kappa^2 c^2 G_ii). Immutable,
-/// thread-safe.
+/// White noise of 1 per square degree after the eye's filter H. The scores of templates i and j have the covariance
+/// G_ij = <H F_i, H F_j>, where F is the spectrum of the target after the display. G_ii is d'^2 of the ideal target at
+/// contrast 1. Noise proportional to the contrast multiplies the standard deviation by sqrt(1 + kappa^2 c^2 G_ii).
+/// Immutable, thread-safe.
 class EyeNoise {
  public:
-  /// Largest share of a score's variance that the draws may omit. Scores of two small triangles differ by about 1e-2 of
-  /// their variance.
+  /// Largest share of the variance of a score that the draws may omit. For comparison, the scores of two small
+  /// triangles differ by about 1e-2 of their variance.
   static constexpr double max_left_out = 3e-4;
 
   /// `power`: H^2 times the square of the display's transfer, in cycles per displayed sample.
   EyeNoise(EyeTemplates templates, const FilterTable& power);
 
-  /// Returns G of two templates, which are numbered as in the bank.
+  /// Returns G of two templates. Indices as in the bank.
   [[nodiscard]] double covariance(std::size_t first, std::size_t second) const;
   /// Returns d'^2 of the ideal target at luminance contrast 1.
   [[nodiscard]] double energy() const { return energy_; }
-  /// Returns the standard deviation of the noise in a score of the bank, in units of the contrast, for a target of
-  /// `contrast_k`.
+  /// Returns the standard deviation of the noise in a score of the bank for a target of `contrast_k`, in units of the
+  /// contrast.
   [[nodiscard]] double sd(double contrast_k) const;
-  /// Same for an eye with `gain` times the sensitivity and another value of kappa, `contrast_noise`.
+  /// Returns the same standard deviation for an eye with `gain` times the sensitivity and with kappa =
+  /// `contrast_noise`.
   [[nodiscard]] double sd(double contrast_k, double gain, double contrast_noise) const;
   /// Returns the number of independent normal numbers in one draw.
   [[nodiscard]] std::size_t rank() const { return columns_.size(); }
   /// Returns the columns of the factor of the covariance relative to energy(): one value for each template.
   [[nodiscard]] const std::vector<std::vector<double>>& columns() const { return columns_; }
-  /// Adds `sd` times the scores of the normal numbers. `numbers` has rank() elements, `scores` has the bank's
-  /// padded_templates().
+  /// Adds `sd` times the noise scores that belong to the normal numbers. `numbers`: rank() elements; `scores`:
+  /// padded_templates() elements.
   void add(std::span<const float> numbers, float sd, std::span<float> scores) const;
 
  private:
@@ -62,10 +63,10 @@ class EyeNoise {
 
   EyeTemplates templates_;
   double energy_ = 0;
-  /// Alternative o is alternative 0 after o quarter turns, and the filter has the same symmetry: four tables are then
-  /// sufficient.
+  /// True: alternative o is alternative 0 after o quarter turns, and the filter has the same symmetry. Four tables are
+  /// then sufficient.
   bool turned_ = false;
-  std::vector<std::vector<double>> tables_;  ///< G by pair of alternatives and displacement
+  std::vector<std::vector<double>> tables_;  ///< G for each pair of alternatives, as a function of the displacement
   std::vector<std::vector<double>> columns_;
   std::vector<float> factor_;  ///< [block of templates][number][template in block]
 };

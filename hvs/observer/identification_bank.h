@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Templates of an observer that identifies arbitrary shapes. There is one for every side of every alternative at every
-// search place.
+// Templates of an observer that identifies arbitrary shapes: one template for every view of every alternative at every
+// search position.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,8 @@
 
 namespace todbench {
 
-/// One alternative: its edges as viewed from every side, in displayed samples, near the origin. Levels in any unit.
+/// One alternative: a list of views, each with its edges in displayed samples near the origin. Levels may have any
+/// unit.
 using AlternativeAspects = std::vector<std::vector<StepEdge>>;
 
 /// A camera whose blur the templates include: transfer function in cycles per displayed sample, and its cut-off.
@@ -26,8 +27,8 @@ struct KnownCamera {
 };
 
 /// Returns a picture minus its background. The background is the mean of the picture or, for an eye, the mean of its
-/// outermost samples. An eye does not respond to a uniform field, but it responds to a part of the mean of a large
-/// target.
+/// outermost samples. The reason is that an eye does not respond to a uniform field, but responds to a part of the mean
+/// of a large target.
 [[nodiscard]] cv::Mat1f without_background(const TemplateObserverSpec& spec, cv::Mat1f picture);
 
 /// Returns the side of the search window in samples, an even number.
@@ -35,26 +36,27 @@ struct KnownCamera {
                                                 std::span<const AlternativeAspects> alternatives,
                                                 int samples_per_pitch);
 
-/// The template observer generalised from triangles to other shapes. A template is the ideal picture behind display and
-/// blur of the eye, without its mean and with unit norm, at one place of the search. The score of an alternative is the
-/// largest score over its sides and places.
+/// The template observer, generalised from triangles to other shapes. A template is the ideal picture after display and
+/// blur of the eye, at one search position, minus its mean and divided by its norm. The score of an alternative is the
+/// largest score over its views and search positions.
 ///
 /// Blur affects the four orientations of a triangle equally, but it can make one shape similar to another. The
-/// templates can therefore include the blur of a known camera, which then replaces display and eye. In that case the
-/// shown alternative has the largest score if there is no noise (Cauchy-Schwarz inequality).
+/// templates can therefore include the blur of a known camera. Without an eye (hvs-1) this blur replaces display and
+/// blur of the eye; with an eye it is applied before display and eye. The shown alternative then has the largest score
+/// if there is no noise (Cauchy-Schwarz inequality).
 ///
-/// The templates of one picture at all places (289 in hvs-1) are linear combinations of fewer orthonormal ones: 30 to
-/// 70 for triangles up to 4 samples. The residual of every template is below 1e-4 of its norm, so the error of a score
-/// is at most that fraction of the norm of the patch.
+/// The templates of one view at all search positions (289 in hvs-1) are computed as linear combinations of fewer
+/// orthonormal pictures: 30 to 70 for triangles up to 4 samples. The residual of every template is below 1e-4 of its
+/// norm, so the error of a score is at most 1e-4 of the norm of the patch.
 ///
-/// With an eye (hvs-2) a template is the ideal picture behind display and eye, divided by its own norm behind the eye.
-/// Triangles have equal norms; different shapes do not. Cameras and sides precede display and eye. The noise of the eye
-/// is white behind H. Its scores are computed from white pictures on a lattice that is fine enough for the eye, with
-/// templates to which display and H are applied once. Immutable, thread-safe.
+/// With an eye (hvs-2) a template is the ideal picture after display and eye, divided by its own norm after the eye.
+/// This norm is equal for all orientations of a triangle, but differs between shapes. The noise of the eye is white
+/// after H. Its scores are computed from white pictures on a lattice that is fine enough for the eye. For these scores,
+/// display and H are applied to the templates once. Immutable, thread-safe.
 class IdentificationBank {
  public:
   /// Computes the templates. `camera`: empty for ideal templates, as for triangles. Error: `invalid_input` (fewer than
-  /// two alternatives, one without sides or without edges, or templates that need more than 1 GiB).
+  /// two alternatives, an alternative without views, a view without edges, or templates of more than 1 GiB).
   [[nodiscard]] static Result<IdentificationBank> build(const TemplateObserverSpec& spec,
                                                         std::span<const AlternativeAspects> alternatives,
                                                         int samples_per_pitch,
@@ -63,25 +65,26 @@ class IdentificationBank {
   /// Returns the side of the square window in samples, an even number.
   [[nodiscard]] int window_samples() const { return window_; }
   [[nodiscard]] std::size_t alternatives() const { return first_aspect_.size() - 1; }
-  /// Returns the number of sides of all alternatives together.
+  /// Returns the total number of views of all alternatives.
   [[nodiscard]] std::size_t views() const { return aspects_.size(); }
   /// Returns the length of a score vector.
   [[nodiscard]] std::size_t scores() const { return aspects_.size() * static_cast<std::size_t>(places_ * places_); }
   /// Returns the scores of all templates for a patch of window_samples()^2 values whose mean is 0.
   [[nodiscard]] std::vector<float> project(const cv::Mat1f& patch) const;
-  /// Returns project() of each patch, bit-identical. It is faster than single calls, because the templates of large
-  /// targets (hundreds of megabytes) are read once for all patches.
+  /// Returns project() of each patch, with bit-identical results. This is faster than single calls, because the
+  /// templates, which may have hundreds of megabytes, are read only once.
   [[nodiscard]] std::vector<std::vector<float>> project_all(std::span<const cv::Mat1f> patches) const;
-  /// Returns the side of a picture of the noise of the eye, in points of the fine lattice; 0 without an eye.
+  /// Returns the side of a noise picture of the eye, in points of the fine lattice; 0 without an eye.
   [[nodiscard]] int eye_points() const { return eye_ ? eye_->window_ : 0; }
-  /// Returns scores of the noise of the eye with standard deviation 1. `white`: white pictures of standard deviation 1
-  /// with eye_points() on a side. Precondition: an eye.
+  /// Returns the scores of the eye's noise with standard deviation 1. `white`: pictures of white noise with standard
+  /// deviation 1 and eye_points() on a side. Precondition: the observer has an eye.
   [[nodiscard]] std::vector<std::vector<float>> project_eye(std::span<const cv::Mat1f> white) const {
     return eye_->project_all(white);
   }
-  /// Returns the standard deviation of the noise of the eye in a score of pictures in kelvin. A view is shown with the
-  /// contrast `contrast_k`, which is `level` in the unit of its edges. `seeing`: the observer of the bank, or an
-  /// observer that differs from it only in sensitivity, channels or contrast noise. Precondition: an eye.
+  /// Returns the standard deviation of the eye's noise in a score, for pictures in kelvin. `contrast_k`: contrast of
+  /// the shown view; `level`: the same contrast in the unit of its edges. `seeing`: the observer of the bank, or an
+  /// observer that differs from it only in sensitivity, channels or contrast noise. Precondition: the observer has an
+  /// eye.
   [[nodiscard]] double eye_noise_k(const TemplateObserverSpec& seeing, std::size_t alternative, std::size_t aspect,
                                    double contrast_k, double level) const;
   /// Returns d'^2 of a view at luminance contrast 1, for the observer of the bank; `level` as in eye_noise_k().
@@ -90,7 +93,7 @@ class IdentificationBank {
   /// second.
   [[nodiscard]] std::size_t best(std::span<const float> signal, std::span<const float> first, float first_scale,
                                  std::span<const float> second, float second_scale) const;
-  /// Writes the largest element of every alternative, in order.
+  /// Writes the largest element of the sum of best() for every alternative, in the order of the alternatives.
   void largest_of_each(std::span<const float> signal, std::span<const float> first, float first_scale,
                        std::span<const float> second, float second_scale, std::span<float> largest) const;
 
@@ -98,12 +101,12 @@ class IdentificationBank {
   IdentificationBank() = default;
   struct Views;
   Result<void> add(const Views& views);
-  int window_ = 0, places_ = 0;                    ///< places per axis
-  std::vector<cv::Mat1f> aspects_;                 ///< [place][in the aspect's own part of the basis]
-  std::vector<std::size_t> first_aspect_;          ///< of each alternative, and the end
-  std::vector<float> basis_;                       ///< of all aspects: [block][sample][in block], as in TemplateBank
+  int window_ = 0, places_ = 0;            ///< search positions per axis
+  std::vector<cv::Mat1f> aspects_;         ///< [place][in the aspect's own part of the basis]
+  std::vector<std::size_t> first_aspect_;  ///< index of the first view of each alternative, then the number of views
+  std::vector<float> basis_;  ///< orthonormal pictures of all views: [block][sample][in block], as in TemplateBank
   std::shared_ptr<const IdentificationBank> eye_;  ///< the same views on the lattice of the noise of the eye
-  std::vector<double> energy_;                     ///< of each aspect behind the eye, in samples; only with an eye
+  std::vector<double> energy_;                     ///< energy of each view after the eye, in samples; only with an eye
   TemplateObserverSpec spec_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interface of observers, which answer the orientation of a target. Their input is limited to patches and alternatives:
-// they do not receive plates, files or cameras.
+// Interface of observers, which determine the orientation of a target. Their input is limited to patches and
+// alternatives. They have no access to plates, files or cameras.
 #pragma once
 
 #include <array>
@@ -18,9 +18,10 @@ namespace todbench {
 
 /// The window around one target, in displayed samples. Square, an even number of samples on a side.
 struct Patch {
-  cv::Mat1d kelvin;    ///< with any constant background; only differences matter
-  cv::Point2d phase;   ///< target centroid minus window centre, in samples; ignored by observers that search
-  double noise_k = 0;  ///< temporal noise of the sensor, sd per sample; used only by observers of limited efficiency
+  cv::Mat1d kelvin;   ///< temperatures with any constant background, because only differences matter
+  cv::Point2d phase;  ///< target centroid minus window centre, in samples; ignored by observers that search
+  /// Temporal noise of the sensor, sd per sample; used only by observers that enlarge this noise.
+  double noise_k = 0;
 };
 
 /// The answer to one patch.
@@ -31,11 +32,12 @@ struct Choice {
   std::array<double, max_alternatives> scores{};  ///< decision variable of each alternative, in units of the contrast
 };
 
-/// Probabilities of all answers of an observer to one patch, over all noise that the observer adds.
+/// Probabilities of all answers of an observer to one patch, averaged over the noise that the observer adds.
 struct AnswerProbabilities {
-  std::array<double, Choice::max_alternatives> probability{};  ///< of each alternative; they sum to 1
-  double standard_error = 0;  ///< of the largest probability, if estimated from draws of that noise; 0: exact
-  int draws = 0;              ///< number of noise draws; 0: exact
+  std::array<double, Choice::max_alternatives> probability{};  ///< probability of each alternative; the sum is 1
+  /// Standard error of the largest probability, if estimated from draws of the noise; 0: exact.
+  double standard_error = 0;
+  int draws = 0;  ///< number of noise draws; 0: exact
 };
 
 /// The answer to one patch, and the probabilities of all answers to this patch.
@@ -52,12 +54,13 @@ class PreparedObserver {
   [[nodiscard]] virtual int window_samples() const = 0;
   /// Returns the search range of the templates beyond the window's edge, in samples.
   [[nodiscard]] virtual double search_samples() const = 0;
-  /// Returns the answer. `contrast_k` (with sign): effective contrast of the target. `noise`: random stream of this
-  /// trial only, which provides the internal noise and decides between equal scores. The patch has window_samples() on
-  /// a side. Allocates no memory.
+  /// Returns the answer. `contrast_k` (with sign): effective contrast of the target. `noise`: random stream that is
+  /// used only for this trial. It provides the internal noise and decides between equal scores. The patch has
+  /// window_samples() on a side. Allocates no memory.
   [[nodiscard]] virtual Choice choose(const Patch& patch, double contrast_k, const RandomStream& noise) const = 0;
-  /// Returns choose() and the probability of every answer to the patch, averaged over the observer's own noise. The
-  /// average is exact if possible, otherwise over `draws` noise draws. Allocates no memory after the first call.
+  /// Returns the answer of choose() and the probability of every answer to the patch, averaged over the internal noise.
+  /// The average is exact if possible; otherwise it is taken over `draws` noise draws. Allocates no memory after the
+  /// first call.
   [[nodiscard]] virtual GradedChoice judge(const Patch& patch, double contrast_k, const RandomStream& noise,
                                            int draws) const = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Range of those parameters of an observer with an eye that public data do not determine.
+// Open parameters: parameters of an observer with an eye that published data do not determine, and their range.
 #pragma once
 
 #include <array>
@@ -14,9 +14,9 @@
 
 namespace todbench {
 
-/// An observer at both ends of the joint range of its open parameters: sensitivity +-4 dB, uncertainty of 100 to 3000
-/// channels, contrast noise 0 to 0.07, sensor-noise factor 1.1 to 3.2. A parameter outside its range is not changed.
-/// The acuity is monotone in each parameter, so these are also the ends of the acuity.
+/// Observers with the open parameters at their limits: sensitivity -4 to +4 dB, uncertainty of 100 to 3000 channels,
+/// contrast noise 0 to 0.07, sensor-noise factor 1.1 to 3.2. A parameter outside its range is not changed. The acuity
+/// is monotone in each parameter, so these two observers have the highest and the lowest acuity of the range.
 struct OpenParameterRange {
   TemplateObserverSpec best, worst;
 };
@@ -42,9 +42,9 @@ template <typename Find>
   return std::optional(std::array<Found, 2>{std::move(found[0]), std::move(found[1])});
 }
 
-/// Returns the spread of a quantity: the smallest and the largest of its values at both ends. If the quantity is not
-/// monotone in the parameters, pass the value of the observer itself too. Empty if one of the values is missing. The
-/// spread is not a confidence interval.
+/// Returns the spread of a quantity: the smallest and the largest of `values`. Pass the values of the best and the
+/// worst observer of the range. If the quantity is not monotone in the parameters, also pass the value of the observer
+/// itself. Empty if one of the values is missing. The spread is not a confidence interval.
 [[nodiscard]] std::optional<std::pair<double, double>> spread_of(std::initializer_list<std::optional<double>> values);
 
 }  // namespace todbench

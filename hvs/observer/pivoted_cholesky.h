@@ -10,8 +10,8 @@
 
 namespace todbench {
 
-/// Returns columns c_k whose sum over k of c_k c_k' approximates the covariance. It stops when every variable has at
-/// most `max_left_out` of variance left, or when there are `most` columns. `variances`: the diagonal;
+/// Returns columns c_k whose sum over k of c_k c_k' approximates the covariance. The decomposition stops when at most
+/// `max_left_out` of variance remains for every variable, or when there are `most` columns. `variances`: the diagonal;
 /// `column_of`(index): a column of the covariance.
 template <typename ColumnOf>
 [[nodiscard]] std::vector<std::vector<double>> pivoted_cholesky(std::vector<double> variances, double max_left_out,

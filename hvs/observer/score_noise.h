@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Template scores of white noise from few random numbers, through a factor of the matrix of template products.
+// Template scores of white noise, computed from few random numbers and a factor of the matrix of template products.
 #pragma once
 
 #include <cmath>
@@ -13,8 +13,8 @@ namespace todbench {
 
 /// Standard deviations of the noise that an observer adds, in units of its signal.
 struct ScoreNoiseLevels {
-  double white = 0;  ///< per sample
-  double eye = 0;    ///< of a score (EyeNoise::sd())
+  double white = 0;  ///< white noise per sample
+  double eye = 0;    ///< noise of the eye in a score (EyeNoise::sd())
   [[nodiscard]] double total() const { return eye == 0 ? white : std::hypot(white, eye); }
 };
 
@@ -22,25 +22,25 @@ struct ScoreNoiseLevels {
 enum class AddedWhiteNoise { no, yes };
 
 /// Factor of the covariance of template scores. The scores of white noise with sd 1 per sample are jointly normal, and
-/// their covariance is the matrix of template products. Templates of one shape at neighbouring places are nearly equal,
-/// so this matrix has a small effective rank: a pivoted Cholesky decomposition (Harbrecht, Peters and Schneider 2012)
-/// ends when every template has at most `max_left_out` of its variance left. Immutable, thread-safe.
+/// their covariance is the matrix of template products. Templates of one shape at neighbouring positions are nearly
+/// equal, so this matrix has a small effective rank. A pivoted Cholesky decomposition (Harbrecht, Peters and Schneider
+/// 2012) ends when at most `max_left_out` of the variance of every template remains. Immutable, thread-safe.
 ///
 /// With an eye, the random numbers of the eye's noise come first, then those of the white noise. weigh() scales both to
 /// their shares of the total.
 ///
-/// Each alternative begins a new row of scores: alternative o at place p is element o * row() + p.
+/// Each alternative begins a new row of scores: alternative o at search position p is element o * row() + p.
 class ScoreNoise {
  public:
-  /// Largest share of a score's variance that may be missing. Scores of two small blurred triangles differ by slightly
-  /// more than 1e-2 of their variance.
+  /// Largest share of the variance of a score that may be missing. For comparison, the scores of two small blurred
+  /// triangles differ by slightly more than 1e-2 of their variance.
   static constexpr double max_left_out = 1e-5;
 
   explicit ScoreNoise(const TemplateBank& bank, AddedWhiteNoise white = AddedWhiteNoise::yes);
 
   /// Returns the number of independent normal numbers in one draw.
   [[nodiscard]] std::size_t rank() const { return rank_; }
-  /// Returns the number of places, rounded up to whole blocks.
+  /// Returns the number of search positions, rounded up to whole blocks.
   [[nodiscard]] std::size_t row() const { return row_; }
   [[nodiscard]] std::size_t alternatives() const { return alternatives_; }
   /// Returns row() times alternatives().
@@ -52,8 +52,8 @@ class ScoreNoise {
   /// Returns the factor of the templates from element `first` (a multiple of TemplateBank::block): rank() times
   /// TemplateBank::block values, ordered by random number.
   [[nodiscard]] const float* factor(std::size_t first) const { return values_.data() + first * rank_; }
-  /// Copies the factor of one template: rank() numbers. Its product with the factor of another template is their
-  /// covariance.
+  /// Copies the factor of one template: rank() numbers. The scalar product of the factors of two templates is the
+  /// covariance of their scores.
   void copy_factor(std::size_t index, std::span<float> numbers) const;
   /// Multiplies numbers by the shares of eye and white noise in the total. No effect without an eye.
   void weigh(const ScoreNoiseLevels& levels, std::span<float> numbers) const;

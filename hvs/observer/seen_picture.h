@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures behind display and eye, for criteria without templates.
+// Pictures after display and eye, for criteria without templates.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -8,15 +8,15 @@
 
 namespace todbench {
 
-/// Filters pictures with display and H. A value is the mean over the area of a displayed sample. The noise of the eye
-/// in such a mean is independent of the others; its standard deviation is 1 / (side of a sample in degrees). Immutable,
-/// thread-safe.
+/// Filters pictures with display and H. Each value of the result is the mean over the area of a displayed sample. The
+/// noise of the eye is independent between these means. Its standard deviation is 1 / (side of a sample in degrees).
+/// Immutable, thread-safe.
 class SeenPicture {
  public:
   /// Prepares the filter for square pictures of `side` samples. Precondition: an eye with a display.
   SeenPicture(const TemplateObserverSpec& spec, int side);
-  /// Returns a picture behind display and eye. The background of the picture, the mean of its outermost samples,
-  /// continues beyond its border.
+  /// Returns a picture after display and eye. Outside its border, the picture is continued with the mean of its
+  /// outermost samples.
   [[nodiscard]] cv::Mat1f of(const cv::Mat1f& picture) const;
 
  private:

@@ -6,9 +6,10 @@
 
 namespace todbench {
 
-/// Returns 1 if the score of `alternative` is above all others, 0 if another one is above it, and its equal share on a
-/// tie. The score of an alternative is the maximum over its `places` scores of signal + scale * noise. `signal` and
-/// `noise` hold at least alternatives * places scores. Bit-identical on every instruction set (no sum is reordered).
+/// Returns 1 if `alternative` has the highest score, and 0 if another alternative has a higher score. If n alternatives
+/// share the highest score, it returns 1 / n for each of them. The score of an alternative is the maximum over its
+/// `places` scores of signal + scale * noise. `signal` and `noise` have at least alternatives * places elements.
+/// Bit-identical on every instruction set (no sum is reordered).
 [[nodiscard]] double share_won(std::span<const float> signal, std::span<const float> noise, float scale, int places,
                                int alternatives, int alternative);
 

@@ -8,8 +8,8 @@
 
 namespace todbench {
 
-/// Returns the interpolated value at x in [0, 1] between y[1] and y[2]; the four values are at -1, 0, 1, 2. The
-/// interpolant is a cubic with a continuous first derivative that never leaves the range of y[1] and y[2] (Steffen
+/// Returns the interpolated value at x in [0, 1] between y[1] and y[2]. The four values are at x = -1, 0, 1, 2. The
+/// interpolant is a cubic with a continuous first derivative. Its values always lie between y[1] and y[2] (Steffen
 /// 1990, Astron. Astrophys. 239, 443, eq. 11).
 [[nodiscard]] inline double steffen(const std::array<double, 4>& y, double x) {
   const auto slope = [](double before, double after) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The template observer: it correlates a patch with ideal shapes behind the viewing filter, and searches for the
-// position. hvs-1 has a blur and internal noise proportional to the contrast; hvs-2 has a display and an eye.
+// The template observer. It correlates a patch with ideal shapes after the viewing filter, at every search position.
+// hvs-1 has a blur, and internal noise proportional to the contrast. hvs-2 has a display and an eye.
 #pragma once
 
 #include <map>
@@ -18,43 +18,44 @@
 
 namespace todbench {
 
-/// Parameters of the template observer; the defaults are hvs-1. A parameter set has a versioned name and is never
-/// changed afterwards. sigma and the internal noise of hvs-1 were tuned to a published microscan gain of 55 %
-/// (EO-VISTA: Bijl, Hogervorst and Vos). hvs-1 is not a validated model of people.
+/// Parameters of the template observer; the defaults are those of hvs-1. A parameter set has a versioned name and is
+/// never changed. In hvs-1, blur and internal noise were fitted to a published microscan gain of 55 % (EO-VISTA: Bijl,
+/// Hogervorst and Vos). hvs-1 is not a validated model of people.
 struct TemplateObserverSpec {
   std::string name = "hvs-1";
-  double blur_sigma_samples = 0.6;  ///< Gaussian of display and eye together, in displayed samples
+  double blur_sigma_samples = 0.6;  ///< Gaussian blur of display and eye together, in displayed samples
   double internal_noise = 0.07;     ///< sd per displayed sample, relative to the contrast
   double sensor_noise_factor = 1;   ///< factor by which the observer enlarges the sensor's noise (1.75 in human-like-1)
-  double search_range_samples = 1;  ///< in each direction, in x and y
+  double search_range_samples = 1;  ///< largest shift in each direction along x and y
   double search_step_samples = 0.125;
   double window_size_factor = 1.05;  ///< half window = ceil(factor * size + margin), in detector pitches
   double window_margin_pitch = 2;
-  /// Eye of the observer (hvs-2). It replaces blur_sigma_samples and internal_noise, which is then 0. It requires a
-  /// display.
+  /// Eye of the observer (hvs-2). It replaces blur_sigma_samples and internal_noise; set internal_noise to 0. An eye
+  /// requires a display.
   std::optional<EyeParameters> eye{};
-  double window_margin_arcmin = 0;         ///< the larger of the two margins applies; only with an eye
+  /// Margin of the half window in arcmin; the larger of the two margins applies; only with an eye.
+  double window_margin_arcmin = 0;
   std::optional<ViewedDisplay> display{};  ///< display of the plan; only with an eye
-  /// Ratio of height to width of a displayed sample, equal to the ratio of the camera's pixels. Lengths in samples are
-  /// in units of the width; search range and step are in samples of each axis. Not part of a parameter set. An eye
-  /// requires 1.
+  /// Ratio of height to width of a displayed sample, equal to that of a pixel of the camera. Lengths in samples are in
+  /// units of the width. Search range and step are in units of the sample along each axis. Not part of a parameter set.
+  /// An eye requires 1.
   double sample_aspect = 1;
   bool operator==(const TemplateObserverSpec&) const = default;
 };
 
-/// Checks the parameters. Error: `invalid_input` with the parameter that is out of its range.
+/// Checks the parameters. Error: `invalid_input`, with the name of the parameter that is out of range.
 [[nodiscard]] Result<void> validate(const TemplateObserverSpec& spec);
 
-/// Computes the input of an observer's templates: the patch minus its background, in units of the contrast, plus the
-/// observer's own noise per sample, drawn from the trial's `noise`. The background is the mean of the patch or, with an
-/// eye, the mean of its outermost samples (without_background()). `seen`: output, `room`: scratch memory; one value per
-/// sample.
+/// Computes the picture that is correlated with the templates: the patch minus its background, in units of the
+/// contrast, plus the internal noise per sample, drawn from the trial's `noise`. The background is the mean of the
+/// patch or, with an eye, the mean of its outermost samples (without_background()). `seen`: output, `room`: scratch
+/// memory; one value per sample.
 void seen_patch(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k, const RandomStream& noise,
                 std::span<float> seen, std::span<float> room);
 /// Returns the alternative with the highest score; equal scores are decided by the trial's `noise`.
 [[nodiscard]] int winning_alternative(const Choice& choice, const RandomStream& noise);
 
-/// Observer that correlates a patch with ideal shapes at every search place.
+/// Observer that correlates a patch with ideal shapes at every search position.
 class TemplateObserver final : public Observer {
  public:
   /// Precondition: validate(spec) succeeds; 2..8 alternatives.

@@ -12,8 +12,8 @@ struct QuadratureNode {
   double weight = 0;  ///< the weights sum to 2
 };
 
-/// Returns the rule with `count` >= 1 nodes on [-1, 1] in increasing order. Nodes and weights are accurate to a few ulp
-/// (Newton's method on the Legendre recurrence).
+/// Returns the rule on [-1, 1] with `count` >= 1 nodes in increasing order. Nodes and weights are accurate to a few
+/// units in the last place (Newton's method on the Legendre recurrence).
 [[nodiscard]] std::vector<QuadratureNode> gauss_legendre(int count);
 
 }  // namespace todbench

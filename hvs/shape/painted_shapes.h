@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shapes of uniform level painted one over another, represented by the edges at which the level changes.
+// Shapes of uniform level that are painted one over another. They are represented by the edges at which the level
+// changes.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -27,13 +28,14 @@ struct StepEdge {
 /// a coordinate is not finite.
 [[nodiscard]] bool is_simple(const Polygon& polygon);
 
-/// Returns the visible edges of polygons painted in order over level 0. Edges are cut where they cross or touch others;
-/// covered edges and edges with the same level on both sides are omitted; edges shared by two polygons count once.
-/// Features below 1e-9 of the whole extent are lost. Cost: the square of the number of edges.
+/// Returns the visible edges of polygons that are painted in order over level 0. Edges are cut where they cross or
+/// touch another edge. Covered edges, and edges with the same level on both sides, are omitted. An edge shared by two
+/// polygons is returned once. Features below 1e-9 of the whole extent are lost. The computing time grows with the
+/// square of the number of edges.
 [[nodiscard]] std::vector<StepEdge> visible_edges(std::span<const PaintedPolygon> painted);
 
-/// Returns the edges between the square elements of a picture, over level 0 outside. `corner`: corner of element (0,
-/// 0); `side`: side of an element. Collinear neighbouring edges with the same step are joined.
+/// Returns the edges between the square elements of a picture. The level outside the picture is 0. `corner`: corner of
+/// element (0, 0); `side`: side of an element. Collinear neighbouring edges with the same step are joined.
 [[nodiscard]] std::vector<StepEdge> element_edges(const cv::Mat1d& levels, double side, cv::Point2d corner);
 
 /// Returns the integral of the level over the plane.

@@ -13,19 +13,19 @@ namespace todbench {
 
 /// The frequencies m / period, |m| <= band, in both directions.
 struct FrequencyLattice {
-  int period = 32;  ///< in unit lengths (pitches or samples), >= 1
+  int period = 32;  ///< period in unit lengths (pitches or samples), >= 1
   int band = 203;   ///< highest m kept; the highest frequency is band / period
   bool operator==(const FrequencyLattice&) const = default;
 };
 
 /// Returns the Fourier transform of the polygon's indicator at frequency (u, w), in cycles per unit length: the
-/// integral of exp(-2 pi i (u x + w y)) over its area. It is a sum over edges with sinc factors. The relative accuracy
-/// is near 1e-15 times the number of turns, also for wave vectors perpendicular to an edge and at the origin.
+/// integral of exp(-2 pi i (u x + w y)) over its area. It is a sum over edges with sinc factors. The relative error is
+/// about 1e-15 times the number of turns, also at the origin and for wave vectors perpendicular to an edge.
 [[nodiscard]] std::complex<double> polygon_spectrum(const Polygon& polygon, double u, double w);
 
-/// Returns the Fourier transform on a lattice, half plane u >= 0 (the rest follows by symmetry): rows w = -band..band,
-/// columns u = 0..band. Phase factors are separable and tabulated per row and column. Agrees with the single-frequency
-/// form to 1e-13 of the area.
+/// Returns the Fourier transform on a lattice: rows w = -band..band, columns u = 0..band. The other half plane follows
+/// by symmetry. Phase factors are separable and tabulated per row and column. The difference to the function for a
+/// single frequency is below 1e-13 of the area.
 [[nodiscard]] cv::Mat_<std::complex<double>> polygon_spectrum(const Polygon& polygon, const FrequencyLattice& lattice);
 
 /// Fourier transform on a lattice row by row, with separate real and imaginary parts, for callers that filter a row
@@ -51,9 +51,9 @@ class PolygonSpectrumRows {
   Polygon polygon_;
   FrequencyLattice lattice_;
   double reach_;
-  std::vector<PhaseTable> ex_, ey_;               ///< per vertex
-  std::vector<double> kx_, re_, im_;              ///< of the row
-  std::vector<std::vector<double>> e_re_, e_im_;  ///< per vertex: exp(-i k.v) of the row
+  std::vector<PhaseTable> ex_, ey_;               ///< phase tables of each vertex along x and y
+  std::vector<double> kx_, re_, im_;              ///< frequencies and sums of the present row
+  std::vector<std::vector<double>> e_re_, e_im_;  ///< exp(-i k.v) of each vertex v in the present row
 };
 
 }  // namespace todbench

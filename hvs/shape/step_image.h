@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image of painted shapes behind a filter, from the exact spectrum of their edges.
+// Image of painted shapes after a filter, from the exact spectrum of their edges.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -10,9 +10,10 @@
 
 namespace todbench {
 
-/// Returns one period at `per_unit` points per unit length; point (j, i) is at (i, j) / per_unit, periodic. The edges
-/// must be closed, as visible_edges() returns them, and near the origin. Equals the sum of PolygonImage::fine_image()
-/// over polygons that add up to the same picture. Precondition: per_unit * period > 2 band.
+/// Returns one period at `per_unit` points per unit length; point (j, i) is at (i, j) / per_unit, periodic.
+/// Precondition: the edges are near the origin and form closed outlines, as returned by visible_edges(). The result
+/// equals the sum of PolygonImage::fine_image() over polygons that add up to the same picture. Precondition: per_unit *
+/// period > 2 band.
 [[nodiscard]] cv::Mat1d fine_step_image(std::span<const StepEdge> edges, const FilterTable& filter, int per_unit);
 
 }  // namespace todbench

@@ -16,10 +16,10 @@ struct Alternative {
   double ln_shift = 0;  ///< ln(threshold of the alternative / threshold of the fit)
 };
 
-/// Returns the best of the alternatives; empty if none has a threshold. One is the other form. If `options` fix the
-/// lapse, a free lapse is tried with both forms. The last one is a curve that adds a bend and a twist to the model (a
-/// cubic in ln size instead of the straight line), with the lapse of the fit and with larger lapses up to 0.1.
-/// `fit`: fit of the levels with `options`; it has a threshold.
+/// Returns the best alternative; empty if no alternative has a threshold. There are three kinds of alternatives: the
+/// other form; if `options` fix the lapse, both forms with a free lapse; and the model with a cubic in ln size instead
+/// of the straight line, with the lapse of the fit and with larger lapses up to 0.1. `fit`: fit of the levels with
+/// `options`. Precondition: the fit has a threshold.
 [[nodiscard]] std::optional<Alternative> best_alternative(std::span<const Level> levels, const PsychometricFit& fit,
                                                           const FitOptions& options);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exact tests of the answers at single sizes: are there fewer correct answers than guessing yields, and answers that no
-// step function yields?
+// Exact tests of the answers at each size: whether fewer answers are correct than expected from guessing, and whether
+// the answers contradict every step function.
 #pragma once
 
 #include <optional>
@@ -17,17 +17,18 @@ inline constexpr double false_alarms_of_contradiction = 0.001;
 struct Contradiction {
   double size = 0;
   double correct = 0, total = 0;  ///< answers at this size
-  double expected = 0;            ///< the nearest permitted proportion of correct answers
+  double expected = 0;            ///< permitted proportion of correct answers that is nearest to the observed one
   double p = 1;                   ///< probability of such a contradiction at any of the sizes (Bonferroni)
 };
 
-/// Returns the size whose answers contradict chance level most: fewer correct answers than guesses yield, by the
-/// binomial distribution. Empty if p is above `probability` at every size. For counts of binary answers. If the answers
+/// Tests by the binomial distribution whether fewer answers are correct than expected from guessing. Returns the size
+/// with the smallest p. Empty if p is above `probability` at every size. For counts of binary answers. If the answers
 /// of a size come from several clusters, its counts are divided by the ratio of the clustered to the binomial variance.
 [[nodiscard]] std::optional<Contradiction> below_chance(std::span<const Level> levels, double probability);
 
-/// Same for a fit with the verdict step. Permitted are the proportions between the fitted function and the infinitely
-/// steep function with the same threshold, on both sides of it. Also empty without threshold or slope.
+/// Tests whether the answers contradict a fit with the verdict step. Permitted proportions at each size are those
+/// between the fitted function and the infinitely steep function with the same threshold. Also empty if the fit has no
+/// threshold or no slope.
 [[nodiscard]] std::optional<Contradiction> contradicts_step(std::span<const Level> levels, const PsychometricFit& fit,
                                                             PsychometricForm form, double probability);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scatter of answers about a fitted function: too large, too small, or as expected by chance.
+// Tests whether the scatter of answers about a fitted function is too large, too small, or as expected by chance.
 #pragma once
 
 #include <span>
@@ -14,28 +14,29 @@ struct Dispersion {
   /// Degrees of freedom of a chi-square distribution; the ratio follows this distribution divided by its mean. 0: no
   /// test is possible.
   double degrees_of_freedom = 0;
-  double denominator_freedom = 0;  ///< degrees of freedom of an expectation estimated from clusters; 0: exact
-                                   ///< expectation
+  /// Degrees of freedom of the expectation, if it is estimated from clusters. 0: the expectation is exact.
+  double denominator_freedom = 0;
   /// Return the probability under the model of a ratio at least as large (p_more) or at most as large (p_less).
   [[nodiscard]] double p_more() const;
   [[nodiscard]] double p_less() const;
-  /// Return the ratio that chance exceeds (upper) or undercuts (lower) with this probability.
+  /// Return the ratio above which (upper) or below which (lower) a result occurs by chance with this probability.
   [[nodiscard]] double upper_limit(double probability) const;
   [[nodiscard]] double lower_limit(double probability) const;
 };
 
-/// Tests of the same answers for too much and for too little scatter. With clusters, each test uses the more cautious
-/// of two expectations: one from clusters, one from independent trials.
+/// Tests of the same answers for too much scatter (more) and for too little scatter (less). There are two expectations,
+/// one for clusters and one for independent trials. With clusters, each test uses the expectation that leads to the
+/// smaller number of findings.
 struct Dispersions {
   Dispersion more, less;
 };
 
-/// Returns Pearson's statistic over groups of neighbouring sizes. Each group has enough trials for a chi-square (at
-/// least four times the variance of one answer). The statistic is orthogonal to the fitted parameters and to `besides`,
-/// and uses the exact covariance. In clustered data its distribution follows Rao and Scott (1984) with the second-order
-/// correction. If trials are independent and a size has several rows, Pearson's statistic of those rows is added, with
-/// its exact conditional mean and variance (Dawson 1954). `clusters`: number of clusters of the fit, 0 for independent
-/// trials.
+/// Returns Pearson's statistic over groups of neighbouring sizes. Each group has enough trials for a chi-square
+/// distribution (at least four times the variance of one answer). The statistic is orthogonal to the fitted parameters
+/// and to `besides`, and uses the exact covariance. For clustered data, its distribution is that of Rao and Scott
+/// (1984) with the second-order correction. If trials are independent and a size has several rows, Pearson's statistic
+/// of these rows is added, with its exact conditional mean and variance (Dawson 1954). `clusters`: number of clusters
+/// of the fit; 0: independent trials.
 [[nodiscard]] Dispersions dispersions(const ModelResiduals& model, std::span<const Level> levels,
                                       std::span<const Direction> besides, double clusters);
 

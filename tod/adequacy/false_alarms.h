@@ -7,7 +7,7 @@ namespace todbench {
 /// Probabilities with which a test exceeds its limit by chance.
 struct FalseAlarms {
   double departure = 0, lapse = 0;
-  double scatter = 0;  ///< on each side
+  double scatter = 0;  ///< for too much scatter, and also for too little scatter
 };
 
 }  // namespace todbench

@@ -12,18 +12,20 @@
 
 namespace todbench {
 
-/// The tested direction of departure that exceeds its limit most, or that comes nearest to its limit.
+/// Result of the score test with the largest ratio of score to limit.
 struct Departure {
   std::string towards;  ///< text for a sentence: "towards the acuity form"
-  double score = 0;     ///< in standard deviations
-  double limit = 0;     ///< limit of this direction; chance exceeds one of the limits with the stated probability
+  double score = 0;     ///< score in standard deviations
+  /// Limit for this direction; the probability that any direction exceeds its limit by chance is
+  /// FalseAlarms::departure.
+  double limit = 0;
 };
 
 /// Test of a free lapse against the lapse assumed by the fit.
 struct LapseTest {
   double lapse = 0;      ///< the free lapse
   double statistic = 0;  ///< twice the gain of ln likelihood, divided by the variance inflation of the lapse's score
-  double limit = 0;      ///< chance exceeds it with the stated probability
+  double limit = 0;      ///< the statistic exceeds it by chance with the probability FalseAlarms::lapse
 };
 
 /// Result of test_model().
@@ -33,18 +35,19 @@ struct ModelTest {
   Dispersions scatter;
 };
 
-/// Tests a fitted function. There are score tests (Cox and Hinkley 1974, 9.3) towards the other form (one-sided, half
-/// of the probability), and towards another chance level and a bend (both two-sided); a likelihood-ratio test towards a
-/// lapse; and a test of the scatter of the remaining residuals. In clustered data the variance of a score is the
-/// variance over clusters (Liang and Zeger 1986), at least the variance of independent trials; Student's t applies.
-/// `fit` is regular: ok or extrapolated. `free_fit`: fit of the same levels with a free lapse.
+/// Tests a fitted function in three ways. Score tests (Cox and Hinkley 1974, 9.3) examine departures towards the other
+/// form (one-sided, half of the probability), towards another chance level, and towards a bend (both two-sided). A
+/// likelihood-ratio test examines a free lapse. The third test examines the scatter of the remaining residuals. For
+/// clustered data the variance of a score is the variance over clusters (Liang and Zeger 1986), at least the variance
+/// of independent trials, and Student's t is used. `free_fit`: fit of the same levels with a free lapse. Precondition:
+/// the verdict of `fit` is ok or extrapolated.
 [[nodiscard]] ModelTest test_model(std::span<const Level> levels, const PsychometricFit& fit,
                                    const std::optional<PsychometricFit>& free_fit, const FitOptions& options,
                                    const FalseAlarms& probability);
 
-/// Returns whether a slope at the upper end of the domain is significant; few trials often form a perfect step by
-/// chance. Compares twice the gain in ln likelihood, of a slope at the end of the domain over half this slope, with the
-/// limit for `probability`.
+/// Returns whether a slope at the upper limit of its domain is significant. With few trials, the answers often form a
+/// perfect step by chance. Twice the gain in ln likelihood from half the largest slope to the largest slope is compared
+/// with the limit for `probability`.
 [[nodiscard]] bool asks_for_steeper(std::span<const Level> levels, const PsychometricFit& fit,
                                     const FitOptions& options, double probability);
 

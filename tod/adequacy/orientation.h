@@ -12,14 +12,15 @@
 namespace todbench {
 
 /// Compares the answers at one contrast by the direction of the triangles in the picture. The threshold of each
-/// direction comes from the common function of the twin, shifted along ln size (one step of the quasi-likelihood
-/// estimate, twin_shape_estimate()). The axes are compared within each combination of plate and mounting; the scatter
-/// over these combinations yields the error. Empty with fewer than three combinations, or if a direction is missing in
-/// one of them.
+/// direction is computed from the function of the twin, which is shifted along ln size (one step of the
+/// quasi-likelihood estimate, twin_shape_estimate()). The axes (up and down, left and right) are compared within each
+/// combination of plate and mounting. The standard error is computed from the scatter over these combinations. Empty
+/// with fewer than three combinations, or if a combination has no answers to one of the directions.
 [[nodiscard]] std::optional<Orientations> orientations(std::span<const Trial> trials, const ProportionTable& table);
 
-/// Returns a finding if the difference of the axes exceeds chance (two-sided t test at 0.3 %) and 2 %; otherwise empty.
-/// The threshold itself remains usable, because it is the mean over the directions.
+/// Returns a finding if the difference between the axes is significant (two-sided t test at 0.3 %) and above 2 %;
+/// otherwise empty. The finding does not make the threshold unfit, because the threshold is the mean over the
+/// directions.
 [[nodiscard]] std::optional<AdequacyFinding> orientation_finding(const Orientations& found);
 
 }  // namespace todbench

@@ -12,9 +12,9 @@ namespace todbench {
 
 /// Residual at one size.
 struct LevelResidual {
-  double ln_size = 0;  ///< relative; meaningless for catch trials
+  double ln_size = 0;  ///< relative to the reference size; meaningless for catch trials
   double trials = 0;
-  double right = 0, wrong = 0;  ///< probabilities according to the function
+  double right = 0, wrong = 0;  ///< probabilities of a correct and of a wrong answer according to the function
   double logit = 0;             ///< ln(right / wrong), limited to +-50
   double residual = 0;          ///< correct answers minus their expectation
   bool catch_trials = false;
@@ -31,7 +31,7 @@ struct ModelResiduals {
   std::array<bool, 3> fitted{};       ///< parameters that were fitted
   std::vector<LevelResidual> levels;  ///< sizes increasing, catch trials last
 };
-/// Returns the residuals at a place of maximum likelihood. `fitted`: the parameters that were fitted.
+/// Returns the residuals at the maximum of the likelihood. `fitted`: the parameters that were fitted.
 [[nodiscard]] ModelResiduals model_residuals(const PooledCounts& counts, PsychometricForm form,
                                              const PsychometricPlace& place, const std::array<bool, 3>& fitted);
 
@@ -47,8 +47,8 @@ struct Direction {
   double score = 0;             ///< standard normal under the model
 };
 
-/// Derives directions from weights of the residuals. A direction is empty if the parameters, or the directions
-/// `besides`, leave less than a hundredth of the variance of the weights.
+/// Computes directions from weights of the residuals. A direction is orthogonal to the fitted parameters and to
+/// `besides`. It is empty if less than a hundredth of the variance of the weights then remains.
 class Directions {
  public:
   explicit Directions(const ModelResiduals& model);
@@ -62,9 +62,9 @@ class Directions {
   std::vector<std::vector<double>> parameters_;  ///< orthonormal
 };
 
-/// Returns the covariance of the scores of directions over clusters (Liang and Zeger 1986), times G / (G - 1), where G
-/// is the number of clusters, row by row. In rows without a cluster each trial is a cluster. Precondition: `clusters` >
-/// 1.
+/// Returns the covariance matrix of the scores of directions over clusters, row by row (Liang and Zeger 1986). It
+/// contains the factor G / (G - 1), where G is the number of clusters. In rows without a cluster, each trial is a
+/// cluster. Precondition: `clusters` > 1.
 [[nodiscard]] std::vector<double> cluster_covariance(const ModelResiduals& model, std::span<const Level> levels,
                                                      std::span<const Direction> directions, double clusters);
 

@@ -10,8 +10,8 @@
 
 namespace todbench {
 
-/// Returns the scatter about the fitted function, like dispersions(). Empty for graded answers (their scatter is
-/// estimated), for a fit without a twin's function, and if all answers are one cluster.
+/// Returns the scatter about the fitted function, as dispersions() does. Empty for graded answers (because their
+/// scatter is estimated), for a fit without the function of a twin, and if all answers form one cluster.
 [[nodiscard]] std::optional<Dispersions> twin_dispersions(std::span<const Level> levels, const PsychometricFit& fit,
                                                           const FitOptions& options);
 

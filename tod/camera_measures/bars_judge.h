@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Judges the bars and spots of a plate with the observer: frames in, thresholds out. Uses no devices.
+// Judges the bars and spots of a plate with the observer. Computes thresholds from frames. Uses no devices.
 #pragma once
 
 #include <optional>
@@ -13,13 +13,13 @@
 
 namespace todbench {
 
-/// Presentation of the plate in a frame.
+/// State of the plate in a frame.
 struct ShownBars {
   int set_up = 0;
   std::size_t level = 0;  ///< index of the contrast
   double said_k = 0;      ///< reported by the target, signed
   Mounting mounting = Mounting::identity;
-  Registration where;  ///< registration of the plate in this mounting and place
+  Registration where;  ///< registration of the plate in this mounting and position
   double noise_k = 0;  ///< temporal noise of the camera, sd of a pixel in one frame
 };
 
@@ -29,7 +29,8 @@ class BarsJudge {
   /// Prepares the observer. `where`: registration of the plate in identity mounting, for scale and direction. Errors:
   /// `invalid_input` (no pair that can be judged), and those of the observer's templates.
   [[nodiscard]] static Result<BarsJudge> create(const MrtdOptions& options, const Registration& where);
-  /// Judges all places of one frame. Excludes places permanently once their window leaves the picture.
+  /// Judges all bars and spots in one frame. Bars or spots whose window is partly outside the picture are excluded from
+  /// then on.
   void add(const cv::Mat1d& kelvin, const ShownBars& shown);
   [[nodiscard]] MrtdMeasure result() const;
 
@@ -50,12 +51,12 @@ class BarsJudge {
     std::optional<IdentificationBank> bank{};
     std::vector<std::vector<float>> own_noise{};  ///< scores of white noise of sd 1
     std::vector<std::vector<float>> eye_noise{};  ///< scores of the noise of the eye of sd 1; empty without an eye
-    std::vector<Answers> answers{};               ///< by observer
+    std::vector<Answers> answers{};               ///< answers of each observer
     std::vector<double> phase{};                  ///< sampling phase of the target across the bars, by set-up
     bool left_out = false;
   };
   struct Thresholds;
-  /// A set-up, or a part of the frames of every set-up, that is left out; by default neither.
+  /// Data that are left out: one set-up, or one part of the frames of every set-up. By default no data are left out.
   struct LeftOut {
     static constexpr std::size_t none = -1;
     std::size_t set_up = none, frame_part = none;
@@ -66,10 +67,11 @@ class BarsJudge {
   explicit BarsJudge(const MrtdOptions& options);
   Result<void> add_place(const PlateRectangle& target, const PlateRectangle& other, Place place,
                          const std::vector<AlternativeAspects>& alternatives);
-  /// Adds the decisions of every observer about an interval to the scores of its level and set-up. `pattern`: scores of
-  /// the frame's window, in kelvin.
+  /// Adds the scores of every observer for one interval to those of its level and set-up. `pattern`: scores of the
+  /// window in the frame, in kelvin.
   void decide(Place& place, bool target, const std::vector<float>& pattern, const ShownBars& shown);
-  /// Keeps both windows of a frame for human observers. Bars beyond the cut have no threshold and are not kept.
+  /// Keeps both windows of a frame for human observers. Bars above mrtd_cut_per_pitch have no threshold and are not
+  /// kept.
   void keep(std::size_t place, const ShownBars& shown, const cv::Mat1f& target, const cv::Mat1f& other);
   [[nodiscard]] KeptBars kept() const;
   [[nodiscard]] Thresholds thresholds(const Place& place, std::size_t observer, const LeftOut& left_out) const;
@@ -80,10 +82,10 @@ class BarsJudge {
   [[nodiscard]] MrtdPoint point(const Place& place) const;
 
   MrtdOptions options_;
-  /// The observer of the plan; with an eye also the observers at the best and the worst end of its open parameters.
+  /// The observer of the plan. With an eye also the best and the worst observer of the range of its open parameters.
   std::vector<TemplateObserverSpec> observers_;
   std::vector<Place> places_;
-  /// Targets and alternatives of places_, alternating, as rectangles that mounted() can move.
+  /// Rectangles of the targets and alternatives of places_, in turn. mounted() transforms them for each mounting.
   TargetPlate positions_;
   std::vector<double> said_sum_k_;
   std::vector<int> said_count_;

@@ -21,48 +21,50 @@ struct BarsModel {
   double best = 0, mean = 0, worst = 0;
 };
 
-/// CTF of one group of four bars: mean of the bars' largest samples minus mean of the spaces' smallest samples
-/// (bar_modulation()), divided by the contrast of large areas.
+/// CTF of one group of four bars: the modulation of the bars (bar_modulation()) divided by the contrast of large areas.
+/// The modulation is the mean of the largest samples of the bars minus the mean of the smallest samples of the spaces.
 struct BarsCtf {
   std::string group;  ///< name of the group
   EdgeAxis axis = EdgeAxis::x;
   double frequency_per_pitch = 0;    ///< across the bars, in this picture
-  double angle_deg = 0;              ///< from the axis to the direction across the bars
+  double angle_deg = 0;              ///< angle from the axis to the direction across the bars
   cv::Point2d middle_px{0, 0};       ///< centre of the group in the picture
   int pixels = 0;                    ///< number of pixels used for the profile
   double noise_over_contrast = 0;    ///< noise of one pixel, from the residuals of the profile
   Estimate best, mean, worst;        ///< over the sampling phases
   int bars_separated_at_best = 1;    ///< 4 if every space is lower than both neighbouring bars
   double share_of_four = 0;          ///< share of the phases at which four bars are separated
-  std::optional<BarsModel> model{};  ///< empty for a real camera
+  std::optional<BarsModel> model{};  ///< modulations of a simulated sensor; empty for a real camera
 };
 
 /// CTF of all groups of a plate.
 struct PlateBarsCtf {
   std::vector<BarsCtf> groups;  ///< x before y, low frequencies first
-  double contrast_k = 0;        ///< of large areas, signed, in the unit of the picture
-  double far_spread = 0;  ///< share of contrast_k that the optics spread beyond the squares; it has been corrected
+  double contrast_k = 0;        ///< contrast of large areas, signed, in the unit of the picture
+  /// Share of contrast_k that the optics spread beyond the squares; contrast_k is corrected for it.
+  double far_spread = 0;
   std::vector<std::string> reasons{};  ///< sentences about groups that could not be measured
 };
 
-/// Measures the CTF of every group. A group is slanted, so that each line of pixels has another phase. All pixels at
-/// least 3.5 pixels from its ends are samples of one profile along the normal. The profile consists of four bars with
-/// one common line spread, a cubic spline with knots every 0.15 pitch, fitted by least squares (BarsFit). It is sampled
-/// once a pitch at 64 phases; best, mean and worst modulation are taken from these samples. Phases between those of the
-/// plate are interpolated; no phase depends on a single pixel.
+/// Measures the CTF of every group. A group is slanted, so each line of pixels has a different sampling phase. All
+/// pixels that are at least 3.5 pixels from the ends of the bars are samples of one profile along the normal. The
+/// profile consists of four bars with a common line spread: a cubic spline with knots every 0.15 pitch, fitted by least
+/// squares (BarsFit). The fitted profile is sampled once per pitch at 64 phases. Best, mean and worst modulation are
+/// computed from these samples. Phases that do not occur on the plate are interpolated, and no phase depends on a
+/// single pixel.
 ///
-/// Contrast: centre of the plate's rectangles minus the area more than 5 pixels away from every cut-out. Light that the
-/// optics spread further is corrected to first order. An MTF that begins as 1 - a f spreads a / (4 pi^2 r^3) at a
-/// distance r (Fourier pair). The value a comes from the edges of the rectangles (plate_edges()), and the sum covers
-/// the plate's drawing. The half-width of its interval is the whole correction, because a halo spreads light
-/// differently. Halos wider than the squares reduce the contrast of squares and bars and are not part of the
-/// CTF.
+/// The contrast is the signal in the centres of the plate's rectangles minus the signal of the area that is more than 5
+/// pixels away from every cut-out. Light that the optics spread farther is corrected to first order: an MTF that begins
+/// as 1 - a f spreads a / (4 pi^2 r^3) at a distance r (Fourier pair). The value a is measured at the edges of the
+/// rectangles (plate_edges()), and the spread is summed over the drawing of the plate. The half-width of the interval
+/// of this correction is the whole correction, because a halo spreads light differently. Halos wider than the squares
+/// reduce the contrast of squares and bars equally and are not part of the CTF.
 ///
-/// Intervals: 100 repetitions with noise as large as the residual of the spline (`seed`) yield standard deviation and
-/// bias (the extremes of a noisy profile are too far apart). The bias is corrected and included in the interval,
-/// together with the difference to a spline with knots every 0.2 pitch. `where` as for plate_edges(). Errors:
-/// `calibration` (plate not in the picture, or its squares have no contrast), `invalid_input` (plate without bars or
-/// without rectangles).
+/// Standard deviation and bias are computed from 100 repetitions with simulated noise (`seed`) as large as the residual
+/// of the spline. There is a bias because the extremes of a noisy profile are too far apart. The result is corrected
+/// for the bias. The interval includes the bias and the difference to a spline with knots every 0.2 pitch. `where` as
+/// for plate_edges(). Errors: `calibration` (plate not in the picture, or its squares have no contrast),
+/// `invalid_input` (plate without bars or without rectangles).
 [[nodiscard]] Result<PlateBarsCtf> plate_bars_ctf(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                   const Registration& where, std::uint64_t seed = 1);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Profile across four bars from samples at many positions, with one line spread for all edges.
+// Profile across four bars, fitted to samples at many positions with the same line spread for all edges.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -24,15 +24,16 @@ class BarsProfile {
 };
 
 /// Least-squares fit of ground level and line spread to samples at fixed positions. A small penalty on the third
-/// differences of the line spread (1e-6 of the mean diagonal) determines the components that four bars do not reveal;
-/// it does not change the profile. Immutable, thread-safe.
+/// differences of the line spread (1e-6 of the mean diagonal) determines components of the line spread that have no
+/// effect on the profile of four bars. Immutable, thread-safe.
 class BarsFit {
  public:
-  /// Prepares the fit. Places, bar width, middle and knots have the same unit. The line spread extends 4 units to both
-  /// sides, so an error of the middle shifts it without changing the values. Empty if there are too few places.
+  /// Prepares the fit. `places`: positions of the samples. Positions, bar width, middle and knots have the same unit.
+  /// The line spread extends 4 units to both sides, so an error of `middle` only shifts the line spread and does not
+  /// change the values. Empty if there are too few samples.
   [[nodiscard]] static std::optional<BarsFit> of(const std::vector<double>& places, double bar_width, double middle,
                                                  double knot_step);
-  /// Fits the values. Precondition: as many values as places.
+  /// Fits the values. Precondition: one value for each position.
   [[nodiscard]] BarsProfile profile(const std::vector<double>& values) const;
   /// Returns the number of samples minus the trace of the smoothing matrix.
   [[nodiscard]] double degrees_of_freedom() const { return freedom_; }

@@ -12,18 +12,19 @@ namespace todbench {
 struct Boresight {
   /// Shift along the rows and columns of the first picture; right and down are positive.
   Estimate shift_x_mrad, shift_y_mrad;
-  Estimate shift_x_px, shift_y_px;  ///< the same in pixels of the first picture
+  Estimate shift_x_px, shift_y_px;  ///< the same shift in pixels of the first picture
   Estimate roll_mrad;  ///< rotation of the camera about its line of sight, clockwise in the viewing direction
   double distance_m = 0;
-  double ifov_ratio = 1;            ///< measured IFOV of the second measurement divided by that of the first
-  double sideways_mrad_per_mm = 0;  ///< error per sideways translation of the camera
+  double ifov_ratio = 1;  ///< measured IFOV of the second measurement divided by that of the first
+  /// Error of the shift in mrad per millimetre of sideways translation of the camera.
+  double sideways_mrad_per_mm = 0;
 };
 
-/// Computes the change from the located plate of both measurements. Each interval combines the errors of both plate
-/// locations and, if the budget states it, the error of the distance. It assumes that the plate did not move between
-/// the measurements and that the entrance pupil did not move sideways. Errors: `invalid_input` with a sentence:
-/// different plate, distance or picture size; measured IFOVs that contradict the stated ones (the distance or zoom
-/// state is wrong); a picture centre beyond the plate's triangles; a record without a line of sight.
+/// Computes the change from the positions of the plate in both measurements. Each interval combines the errors of both
+/// positions and, if the budget states it, the error of the distance. Precondition: between the measurements the plate
+/// did not move, and the entrance pupil did not move sideways. Errors: `invalid_input` (different plate, distance or
+/// picture size; measured IFOVs that contradict the stated IFOVs, because distance or zoom state is wrong; a picture
+/// centre outside the area of the triangles; a record without a line of sight).
 [[nodiscard]] Result<Boresight> boresight(const GeometryMeasure& first, const GeometryMeasure& second);
 
 }  // namespace todbench

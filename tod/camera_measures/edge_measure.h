@@ -14,19 +14,20 @@
 
 namespace todbench {
 
-/// MTF along one axis at one place, from one side or two opposite sides of a rectangle.
+/// MTF along one axis at one position, from one side or two opposite sides of a rectangle.
 struct EdgeMtf {
   std::string place;  ///< name of the rectangle
   EdgeAxis axis = EdgeAxis::x;
-  int sides = 0;                                   ///< number of measured sides
-  cv::Point2d middle_px{0, 0};                     ///< centre of the rectangle
-  double angle_deg = 0;                            ///< from the axis to the edge's normal, mean of the sides
-  double noise_over_step = 0;                      ///< largest value of the sides
-  std::vector<double> frequency_per_pitch;         ///< 0 ... 1, along the normal
-  std::vector<double> mtf, low, high;              ///< mean of the sides; 95 %, not symmetric; low 0: not known
-  double widest_halo_pitch = 0;                    ///< largest sigma of a halo that is part of the MTF
-  double halo_allowance = 0;                       ///< largest share of the step in halos that the interval includes
-  double wide_halo_least = 0, wide_halo_most = 0;  ///< largest values of the sides (SlantedEdge)
+  int sides = 0;                            ///< number of measured sides
+  cv::Point2d middle_px{0, 0};              ///< centre of the rectangle
+  double angle_deg = 0;                     ///< angle from the axis to the normal of the edge, mean of the sides
+  double noise_over_step = 0;               ///< largest value among the sides
+  std::vector<double> frequency_per_pitch;  ///< 0 ... 1, along the normal
+  /// Mean of the sides, and limits of its 95 % interval, which is not symmetric. low = 0: not known.
+  std::vector<double> mtf, low, high;
+  double widest_halo_pitch = 0;                    ///< largest sigma of the halos that are part of the MTF
+  double halo_allowance = 0;                       ///< largest share of the step that the interval allows for halos
+  double wide_halo_least = 0, wide_halo_most = 0;  ///< largest values among the sides (SlantedEdge)
   std::optional<double> mtf50_per_pitch{};         ///< lowest frequency at which the MTF is 0.5
   /// MTF of a simulated sensor in closed form, at the same frequencies and angle; empty for a real camera.
   std::vector<double> model{};
@@ -44,15 +45,15 @@ struct PlateEdges {
   std::vector<std::string> reasons{};  ///< sentences about sides that could not be measured
 };
 
-/// Locates the plate in the picture by its rectangles (normalised correlation, any sign of contrast). Cuts out a region
-/// round the middle of each nearly vertical or horizontal side, and computes its MTF (slanted_edge()). Opposite sides
-/// are averaged. The tails of the MTF come from the whole plate round each rectangle (plate_tails()); their part of the
-/// interval is common to the sides. The interval covers, on each side, at least half of the difference between the
-/// measured sides.
+/// Locates the plate in the picture by its rectangles (normalised correlation, any sign of contrast). Computes the MTF
+/// of a region round the middle of each nearly vertical or nearly horizontal side (slanted_edge()), and averages
+/// opposite sides. The tails of the MTF are fitted to the plate round each rectangle (plate_tails()); their
+/// contribution to the interval is common to all sides of the rectangle. The lower and the upper half-width of the
+/// interval are each at least half of the difference between the measured sides.
 ///
-/// `where`: mapping of the plate's millimetres to pixels except for a shift, for example the registration of another
-/// plate in the same holder. Errors: `calibration` (rectangles not in the picture), `invalid_input` (plate without
-/// rectangles).
+/// `where`: mapping from millimetres on the plate to pixels, correct except for a shift. It may be the registration of
+/// another plate in the same holder. Errors: `calibration` (rectangles not in the picture), `invalid_input` (plate
+/// without rectangles).
 [[nodiscard]] Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                              const Registration& where, const TailBounds& bounds);
 [[nodiscard]] inline Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& mounted_plate,

@@ -19,10 +19,10 @@ struct KeptPlace {
   EdgeAxis axis = EdgeAxis::x;
   double frequency_per_pitch = 0;  ///< 0: a spot
   double size_px = 0;              ///< side of the spot; 0: bars
-  int side_px = 0;                 ///< of the windows
+  int side_px = 0;                 ///< side of the windows
 };
 
-/// Both windows of a place in one frame, in kelvin relative to the mean of each window, as the observer judges them.
+/// The two windows of a KeptPlace in one frame, as the observer judges them: in kelvin, each minus its mean.
 struct KeptPicture {
   std::size_t place = 0;  ///< index in KeptBars::places
   int set_up = 0;
@@ -31,20 +31,21 @@ struct KeptPicture {
   cv::Mat1f other;        ///< five bars, or an empty part of the plate
 };
 
-/// Kept windows and their places.
+/// Kept windows, and the groups of bars and spots to which they belong.
 struct KeptBars {
   std::vector<KeptPlace> places{};
   std::vector<KeptPicture> pictures{};
 };
 
-/// Keeps the first frames of each place, contrast and set-up.
+/// Keeps the windows of the first frames for each group of bars or spot, each contrast and each set-up.
 class BarsKeeper {
  public:
   /// `frames`: number kept for each contrast of each set-up; 0: none.
   explicit BarsKeeper(int frames) : frames_(frames) {}
   [[nodiscard]] bool keeps() const { return frames_ > 0; }
   void add(KeptPicture picture);
-  /// Returns the pictures of all places with a name. `places` has one element for each place of add().
+  /// Returns the pictures of all elements of `places` that have a name. The indices of KeptPicture::place refer to
+  /// `places`.
   [[nodiscard]] KeptBars of(const std::vector<KeptPlace>& places) const;
 
  private:

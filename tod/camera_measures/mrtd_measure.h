@@ -27,18 +27,19 @@ struct MrtdOptions {
   TargetPlate plate{};  ///< plate in identity mounting, with bar_pairs()
   /// Magnitudes of the contrasts, shown at both polarities.
   std::vector<double> contrasts_k{0.0025, 0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};
-  int frames = 16;  ///< number judged at each contrast of each set-up, one by one
-  int set_ups = 8;  ///< positions of the plate relative to the pixels, shared among the mountings; at least 5
+  int frames = 16;  ///< number of frames judged at each contrast of each set-up, one by one
+  /// Number of positions of the plate relative to the pixels, divided among the mountings; at least 5.
+  int set_ups = 8;
   std::vector<Mounting> mountings{Mounting::identity};
   double frequency_per_pitch = 0.25;  ///< the bars with the nearest frequency are stated
   double spot_px = 3;                 ///< the spot with the nearest size is stated
   double pitch_mrad = 0;              ///< IFOV of a pixel
   double locating_k = 4;              ///< contrast at which the plate is located
-  int registration_frames = 32;       ///< number averaged to locate the plate
-  int kept_frames = 0;                ///< number at each contrast of each set-up that is kept for human observers
-  double response = 1;                ///< observed contrast over the contrast that the target reports
+  int registration_frames = 32;       ///< number of frames averaged to locate the plate
+  int kept_frames = 0;                ///< number of frames kept for human observers at each contrast of each set-up
+  double response = 1;                ///< observed contrast divided by the contrast that the target reports
   TemplateObserverSpec observer{};    ///< an observer with an eye includes its display
-  std::uint64_t seed = 1;             ///< of the observer's own noise
+  std::uint64_t seed = 1;             ///< seed of the observer's noise
 };
 
 /// Threshold of one pair of groups of bars (MRTD), or of one spot against an empty part of the plate (MDTD).
@@ -49,10 +50,11 @@ struct MrtdPoint {
   double size_px = 0;              ///< side of the spot; 0: bars
   /// Contrast for 75 % correct answers at each polarity; the negative one is below 0.
   std::optional<double> positive_k{}, negative_k{};
-  std::optional<double> threshold_k{};  ///< half of the difference of the two
+  std::optional<double> threshold_k{};  ///< half of (positive_k - negative_k)
   Interval ci95{};                      ///< interval of threshold_k, by jackknife over the set-ups
-  /// Values of threshold_k at the ends of the open parameters of an observer with an eye (open_parameters.h), from the
-  /// same frames. Empty without an eye, or if an end has no threshold. This is not a confidence interval.
+  /// Values of threshold_k for the best and the worst observer of the range of the open parameters (open_parameters.h),
+  /// from the same frames. Empty without an eye, or if one of the two observers has no threshold. This is not a
+  /// confidence interval.
   std::optional<std::pair<double, double>> spread_k{};
   std::string reason{};                  ///< reason for a missing threshold; empty if there is one
   std::optional<double> best_phase_k{};  ///< threshold at the best sampling phase; empty: not found
@@ -72,8 +74,8 @@ struct MrtdMeasure {
   double frequency_per_pitch = 0, spot_px = 0;  ///< requested
   std::vector<double> contrast_k{};  ///< mean magnitudes of the contrasts that the target reported, in increasing order
   std::vector<MrtdPoint> bars{};     ///< x before y, low frequencies first
-  std::vector<MrtdPoint> spots{};    ///< small ones first
-  std::vector<std::string> reasons{};  ///< sentences about places that could not be judged
+  std::vector<MrtdPoint> spots{};    ///< small spots first
+  std::vector<std::string> reasons{};  ///< sentences about bars and spots that could not be judged
   KeptBars kept{};                     ///< windows for human observers; empty unless kept_frames is above 0
 
   /// Returns the bars on this axis with the frequency nearest to the requested one; null if there are none.
@@ -82,11 +84,11 @@ struct MrtdMeasure {
   [[nodiscard]] const MrtdPoint* stated_spot() const;
 };
 
-/// Highest frequency of an MRTD, with a margin for the error of the scale. Beyond Nyquist a model observer still
-/// discriminates alias patterns of bars, but a person does not see four bars.
+/// Highest frequency of an MRTD: the Nyquist frequency with a margin for the error of the scale. Above the Nyquist
+/// frequency a model observer still discriminates alias patterns of bars, but a person does not see four bars.
 inline constexpr double mrtd_cut_per_pitch = 0.505;
 
-/// A pair of the two alternatives of Bijl and Valeton: four bars, and five bars that fill a square of the same size.
+/// The two alternatives of Bijl and Valeton: a group of four bars and a group of five bars in squares of the same size.
 struct BarPair {
   PlateBars four;
   std::string five;                       ///< name of the group of five
@@ -98,12 +100,12 @@ struct BarPair {
 /// Returns the rectangles that are not part of a group of five bars.
 [[nodiscard]] std::vector<PlateRectangle> spots_of(const TargetPlate& plate);
 
-/// Calls `work`, shows a state of the target and waits until frames of this state can be taken. Frames that arrive
+/// Calls `work`, then shows a state of the target and waits until frames of this state can be taken. Frames that arrive
 /// during `work` are read from the camera.
 using ShowState = std::function<Result<PresentedTarget>(const TargetState&, const std::function<void()>& work)>;
 
-/// A state that the measurement shows. In each mounting the first one is the contrast at which the plate is located.
-/// Every contrast follows, from large to small and with both polarities, at the set-ups of this mounting.
+/// A state that the measurement shows. In each mounting, the first state has the contrast at which the plate is
+/// located. Then all contrasts follow at the set-ups of this mounting, from large to small and with both polarities.
 struct MrtdPresentation {
   TargetState state;
   int set_up = 0;         ///< negative: the plate is located
@@ -112,16 +114,16 @@ struct MrtdPresentation {
 /// Lists the presentations. `pixel_mm`: size of a pixel on the plate.
 [[nodiscard]] std::vector<MrtdPresentation> mrtd_presentations(const MrtdOptions& options, double pixel_mm);
 
-/// Measures the MRTD. A decision compares two intervals, one with four and one with five bars of the same square and
-/// contrast. The observer states which interval had four bars (Bijl and Valeton 1999: free of response bias). Every
-/// frame shows both groups. All pairs of frames are decided, as in virtual_mrtd(). A function of contrast
-/// (fit_contrast()) yields the threshold of each polarity; half of their difference does not contain the offset of the
-/// target. The interval comes from the jackknife over the set-ups, with Student's t. Spots are compared with an empty
-/// part of the plate.
+/// Measures the MRTD. A decision compares two intervals: one with four bars, and one with five bars in a square of the
+/// same size and with the same contrast. The observer states which interval had four bars, so there is no response bias
+/// (Bijl and Valeton 1999). Every frame shows both groups. All pairs of frames are judged, as in virtual_mrtd(). The
+/// threshold of each polarity is computed from a fitted function of contrast (fit_contrast()). Half of the difference
+/// of the two thresholds does not contain the offset of the target. The interval is computed by jackknife over the
+/// set-ups, with Student's t. Spots are compared with an empty part of the plate.
 ///
 /// `where`: registration of a plate in the same holder, in identity mounting. The plate itself is located to a whole
-/// pixel, and the observer searches for the remaining shift. The noise of the camera, which an observer of limited
-/// efficiency enlarges, comes from the frames in which the plate is located. Errors: those of target and camera,
+/// pixel, and the observer searches for the remaining shift. An observer of limited efficiency enlarges the noise of
+/// the camera. This noise is measured in the frames in which the plate is located. Errors: those of target and camera,
 /// `calibration` (plate not in the picture), `invalid_input` (no pair of groups that can be judged).
 [[nodiscard]] Result<MrtdMeasure> measure_mrtd(FrameTaker& taker, const ShowState& show, const Registration& where,
                                                const MrtdOptions& options, std::stop_token stop);

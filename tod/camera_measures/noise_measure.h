@@ -19,22 +19,23 @@ namespace todbench {
 struct NoiseMeasure {
   int frames = 0, rows = 0, columns = 0;  ///< rows and columns of the part of the picture that the plate covers
   std::uint64_t first_frame = 0, last_frame = 0;
-  std::optional<double> since_correction_s{};  ///< at the last frame; empty: no correction is known
-  double mean_k = 0;                           ///< mean temperature reported by the camera
-  NoiseTable table;                            ///< without shading
+  /// Time from the correction to the last frame; empty: no correction is known.
+  std::optional<double> since_correction_s{};
+  double mean_k = 0;  ///< mean temperature reported by the camera
+  NoiseTable table;   ///< noise components after removal of the shading
   double shading_range_k = 0, shading_sd_k = 0;
   std::optional<double> lag1_correlation{};
   std::optional<double> noise_counts{};  ///< temporal noise in steps of the camera's counts; empty: not known
-  cv::Rect field{};                      ///< in the frame
-  cv::Mat1d pixel_sd_k{};                ///< temporal noise of each pixel, without changes of whole frames
+  cv::Rect field{};                      ///< part of the frame that the plate covers
+  cv::Mat1d pixel_sd_k{};                ///< temporal noise of each pixel; changes of whole frames are removed
   cv::Mat1d pattern_k{};                 ///< mean frame minus its mean and shading
 };
 
 /// Options of measure_series_noise().
 struct NoiseOptions {
-  int frames = 64;                         ///< at least 5
+  int frames = 64;                         ///< number of frames, at least 5
   cv::Rect field;                          ///< part of the frame that the plate covers
-  std::optional<cv::Rect> pixel_window{};  ///< window of each frame that is kept to examine its pixels; empty: none
+  std::optional<cv::Rect> pixel_window{};  ///< window of each frame that is kept for the test of pixels; empty: none
 };
 
 /// Result of measure_series_noise().

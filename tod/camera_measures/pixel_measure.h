@@ -26,7 +26,7 @@ struct ZoneArea {
 struct PixelOptions {
   bool whole_frame = false;  ///< a flat field fills the frame; false: only the part covered by the plate is examined
   PixelDefectRules rules;
-  std::vector<ZoneArea> zones{};  ///< in addition to the whole frame
+  std::vector<ZoneArea> zones{};  ///< further zones in addition to the whole frame
 };
 
 /// Largest number of frames in which pixels are examined: 80 MB for 320 x 240.
@@ -44,20 +44,20 @@ struct PixelMeasure {
   std::vector<Zone> zones;  ///< the whole frame first
 };
 
-/// Finds and counts bad and substituted pixels after the removal of shading. `frames`: window `field` of the frames of
-/// one noise cube of a flat field. Errors: those of pixel_defects().
+/// Finds and counts bad and substituted pixels after removal of the shading. `frames`: frames of one noise cube of a
+/// flat field, reduced to the window `field`. Errors: those of pixel_defects().
 [[nodiscard]] Result<PixelMeasure> measure_pixels(std::span<const cv::Mat1f> frames, cv::Size frame,
                                                   const cv::Rect& field, PixelScene scene, const PixelOptions& options);
 
 /// A mean picture of a plate at a contrast.
 struct ContrastPicture {
   double delta_t_k = 0;
-  cv::Mat1d kelvin;  ///< of the whole frame
+  cv::Mat1d kelvin;  ///< picture of the whole frame
 };
 /// Returns the response to temperature of each pixel that lies inside a triangle, at least two pixels from its outline.
-/// The response is the slope, over the contrasts, of the pixel's change relative to the plate's median. NaN for any
-/// other pixel. `field`: part of the frame that is returned; `plate`: part that the plate covers. Precondition: at
-/// least two different contrasts.
+/// The response is the slope of (pixel minus median of the plate) as a function of the contrast. NaN for any other
+/// pixel. `field`: part of the frame that is returned; `plate`: part that the plate covers. Precondition: at least two
+/// different contrasts.
 [[nodiscard]] cv::Mat1d responsivity_in_triangles(std::span<const ContrastPicture> pictures,
                                                   const TargetPlate& mounted_plate, const Registration& where,
                                                   const cv::Rect& field, const cv::Rect& plate);

@@ -20,28 +20,31 @@ struct GeometryPlace {
   cv::Point2d residual_px{0, 0};  ///< located minus fitted
 };
 
-/// Imaging of a plane through a lens: a homography (8 parameters), followed by radial distortion about the middle of
-/// the picture, q = c + (p - c)(1 + k r^2 / R^2). R is half the picture's diagonal (Brown 1966, first term).
+/// Model of the image of a plane: a homography (8 parameters), followed by radial distortion about the middle c of the
+/// picture, q = c + (p - c)(1 + k r^2 / R^2). r is the distance of p from c, and R is half of the diagonal of the
+/// picture (Brown 1966, first term).
 struct PlateGeometry {
   /// Scale on the plate along the picture's rows and columns, at the middle of the plate, without distortion.
   Estimate mm_per_px_x, mm_per_px_y;
-  /// Point of the plate at the centre of the picture, in mm from the centre of the plate; x along the plate's rows.
+  /// Point of the plate at the centre of the picture, in mm from the centre of the plate. x is along the rows of the
+  /// plate.
   Estimate centre_x_mm, centre_y_mm;
-  Estimate rotation_deg;        ///< of the plate in the picture, clockwise
+  Estimate rotation_deg;        ///< rotation of the plate in the picture, clockwise
   Estimate keystone_x_percent;  ///< scale at the plate's right border minus scale at its left border, relative
-  Estimate keystone_y_percent;  ///< scale at its lower border minus scale at its upper border, relative
+  Estimate keystone_y_percent;  ///< scale at the plate's lower border minus scale at its upper border, relative
   Estimate distortion_percent;  ///< k at the corner of the picture; positive: pincushion
   double residual_px = 0;       ///< root mean square of a coordinate, with the degrees of freedom as divisor
   double farthest_px = 0;       ///< largest distance of a triangle from the middle of the picture, in pixels along x
-  double corner_px = 0;         ///< distance of the corner, in pixels along x
+  double corner_px = 0;         ///< distance of the corner from the middle of the picture, in pixels along x
   std::vector<GeometryPlace> places;
 };
 
-/// Locates each triangle separately (fit_shift()) near its place according to `where`. Uses triangles of at least 1.5
-/// px that exceed the noise. Fits nine parameters by least squares; the error of each place consists of its noise and
-/// 0.004 px for the shift caused by blur and sampling. Intervals use Student's t and the larger of residuals and noise.
-/// A triangle with a residual above six times the median is excluded. Errors: `calibration` (fewer than ten triangles,
-/// or they do not distinguish distortion from perspective).
+/// Locates each triangle separately (fit_shift()), starting at its position according to `where`. Uses triangles of at
+/// least 1.5 px that exceed the noise. Fits nine parameters by least squares. The error of each position consists of
+/// its noise and of 0.004 px for the shift caused by blur and sampling. Intervals are computed from the residuals with
+/// Student's t. If the noise of the triangle positions gives a wider interval, that one is used. A triangle with a
+/// residual above six times the median is excluded. Errors: `calibration` (fewer than ten triangles, or triangles that
+/// do not distinguish distortion from perspective).
 [[nodiscard]] Result<PlateGeometry> plate_geometry(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                    const Registration& where);
 

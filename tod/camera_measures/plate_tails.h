@@ -11,9 +11,9 @@
 
 namespace todbench {
 
-/// Fits the tails (edge_tails.h) to the pixels of the plate that are nearest to cut-out `which`: its inside and the
-/// plate round it, outside the core of every edge. Shading is a plane inside and a polynomial of second order outside.
-/// The position of the cut-out is first refined by a fraction of a pixel.
+/// Fits the tails (edge_tails.h) to the pixels that are nearest to cut-out `which`. These are the pixels inside the
+/// cut-out and on the plate round it, except for the core of every edge. The shading is modelled as a plane inside and
+/// as a polynomial of second order outside. The position of the cut-out is first refined by a fraction of a pixel.
 ///
 /// `cut_outs`: outlines of four corners in pixels; `plate`: the part of the picture that the plate covers. Empty if too
 /// few pixels remain.

@@ -14,37 +14,41 @@
 
 namespace todbench {
 
-/// Signal that is evaluated during the steps.
+/// Signal whose response to the steps is evaluated.
 enum class StepSignal {
-  contrast,  ///< pixels that change with the target minus those that do not: response of the detector
-  surround,  ///< level round the target, which changes with the contrast only if the camera controls its gain
+  contrast,  ///< mean of the pixels that change with the target minus mean of the others: response of the detector
+  surround,  ///< level round the target; it changes with the contrast only if the camera has an automatic gain
 };
 
 /// Options of measure_response().
 struct ResponseOptions {
-  std::string plate;                   ///< plate shown during the steps, in identity mounting
-  double delta_t_k = 10;               ///< the contrast steps between 0 and this value
-  int steps = 16;                      ///< number of steps, alternately up and down
-  int frames = 24;                     ///< number recorded after the target has reported the end of a step
-  int contrast_frames = 16;            ///< number averaged to find the pixels that change
-  std::optional<double> settling_s{};  ///< settling time of the target's step; empty: the target must step instantly
+  std::string plate;         ///< plate shown during the steps, in identity mounting
+  double delta_t_k = 10;     ///< the contrast steps between 0 and this value
+  int steps = 16;            ///< number of steps, alternately up and down
+  int frames = 24;           ///< number of frames recorded after the target has reported the end of a step
+  int contrast_frames = 16;  ///< number of frames averaged to find the pixels that change
+  /// Settling time of the contrast of the target; empty: the target must step instantly.
+  std::optional<double> settling_s{};
   StepSignal signal = StepSignal::contrast;
 };
 
 /// Result of measure_response().
 struct ResponseMeasure {
-  double delta_t_k = 0;   ///< of a step
-  double frame_s = 0;     ///< by the camera's clock
+  /// Contrast of a step.
+  double delta_t_k = 0;
+  double frame_s = 0;     ///< frame interval by the camera's clock
   double settling_s = 0;  ///< stated settling time of the target; 0: instant
-  int dropped = 0;        ///< steps that are excluded because they contain a correction of the camera
-  int bright_pixels = 0;  ///< the signal is the mean of these pixels minus that of pixels that do not change
-  double change = 0;      ///< change of the signal in a step, in the unit of the picture
+  int dropped = 0;        ///< number of steps that are excluded because of a correction of the camera
+  /// Number of pixels that change. The signal is the mean of these pixels minus the mean of the pixels that do not
+  /// change.
+  int bright_pixels = 0;
+  double change = 0;  ///< change of the signal in a step, in the unit of the picture
   StepResponse response;
 };
 
-/// Shows the plate at the contrast and at 0 to find the pixels of the signal. Then steps between the two and takes
-/// frames before, during and after each step. Errors: `invalid_input` (settling of the target not stated),
-/// `calibration` (the signal does not change, and those of step_response()), and those of target and camera.
+/// Shows the plate at the contrast and at a contrast of 0 to find the pixels of the signal. Then steps between these
+/// contrasts and takes frames before, during and after each step. Errors: `invalid_input` (settling of the target not
+/// stated), `calibration` (the signal does not change, and those of step_response()), and those of target and camera.
 [[nodiscard]] Result<ResponseMeasure> measure_response(FrameTaker& taker, Target& target, RunController& host,
                                                        const cv::Rect& field, const ResponseOptions& options,
                                                        double frame_rate_hz, const std::stop_token& stop);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Times of frames: rate, jitter, gaps, and latency relative to a stage that uses the clock of the camera.
+// Times of frames: rate, jitter and gaps. Latency, measured with a stage that uses the clock of the camera.
 #pragma once
 
 #include <cstdint>
@@ -27,13 +27,14 @@ struct FrameTimes {
 struct TimingMeasure {
   int frames = 0;
   std::optional<double> stated_rate_hz{};
-  bool device_clock = false;  ///< true: the camera's clock; false: times of arrival
+  bool device_clock = false;  ///< true: times of the camera's clock; false: times of arrival
   Estimate rate_hz{};
-  Estimate jitter_ms{};                ///< standard deviation of the times from a straight line over the frame numbers
-  double largest_deviation_ms = 0;     ///< largest deviation of a time from that line
-  std::optional<double> arrival_ms{};  ///< standard deviation of the times of arrival from such a line
-  std::uint64_t lost = 0;              ///< frames that never arrived
-  std::uint64_t longest_gap = 0;       ///< largest number of successive lost frames
+  Estimate jitter_ms{};             ///< standard deviation of the times from a straight line over the frame numbers
+  double largest_deviation_ms = 0;  ///< largest deviation of a time from that line
+  /// Standard deviation of the times of arrival from a straight line over the frame numbers.
+  std::optional<double> arrival_ms{};
+  std::uint64_t lost = 0;         ///< frames that never arrived
+  std::uint64_t longest_gap = 0;  ///< largest number of successive lost frames
 };
 
 /// Returns the timing of frames, which are in the order of their arrival. Errors: `invalid_input` (fewer than ten
@@ -45,9 +46,9 @@ struct TimingMeasure {
 
 /// Options of measure_latency().
 struct LatencyOptions {
-  double speed_mm_s = 100;  ///< of the plate
-  double travel_mm = 20;    ///< length of a run
-  int runs = 8;             ///< alternately to the right and to the left
+  double speed_mm_s = 100;  ///< speed of the plate
+  double travel_mm = 20;    ///< distance of a run
+  int runs = 8;             ///< number of runs, alternately to the right and to the left
 };
 
 /// Result of measure_latency().
@@ -55,14 +56,14 @@ struct LatencyMeasure {
   double speed_mm_s = 0;
   std::vector<double> runs_ms{};    ///< latency in each run
   std::vector<double> frames_ms{};  ///< latency in each frame of the runs
-  /// Time from the moment at which the target is at a place to the time stamp of the frame that shows it there.
-  /// Includes the time constant of the detector and half of its exposure. Positive: the frame is late.
+  /// Time stamp of a frame minus the time at which the target was at the position that the frame shows. Includes the
+  /// time constant of the detector and half of its exposure. Positive: the frame is late.
   Estimate latency_ms{};
 };
 
-/// Returns the place of the plate along x of the stage in a frame, in mm, as the camera shows it; empty: not found.
+/// Returns the position of the plate in a frame, in mm along the x axis of the stage; empty: not found.
 using PlaceInFrame = std::function<std::optional<double>(const Frame& frame, double expected_mm)>;
-/// Presents the plate at a place along x, in mm.
+/// Presents the plate at a position along x, in mm.
 using PutAt = std::function<Result<void>(double x_mm)>;
 
 /// Measures the latency in runs of the stage. Errors: those of stage and camera; `invalid_input` (a stage that cannot

@@ -19,8 +19,8 @@ struct TriangleStrip {
 };
 
 /// Returns windows round the `count` smallest triangles of a plate, smallest first, from a mean picture in kelvin. All
-/// have the size of the largest triangle's window, at least 16 pixels. Pixels outside the picture are set to the median
-/// of the picture. Precondition: the plate has a triangle.
+/// windows have the same side, which is determined by the largest of these triangles, at least 16 pixels. Pixels
+/// outside the picture are set to the median of the picture. Precondition: the plate has a triangle.
 [[nodiscard]] TriangleStrip smallest_triangles(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                const Registration& where, int count);
 

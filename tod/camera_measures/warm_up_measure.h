@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Warm-up of a camera from its first image: level, fixed pattern and noise as functions of time and of its own
-// temperature.
+// Warm-up of a camera from its first image: level, fixed pattern and noise as functions of time and of the temperature
+// of the camera.
 #pragma once
 
 #include <functional>
@@ -18,9 +18,9 @@ namespace todbench {
 /// Options of measure_warm_up().
 struct WarmUpOptions {
   double duration_s = 600;         ///< duration of the observation, > 0
-  double start_s = 0;              ///< time of the first image since power-on; all times count from power-on
-  double frame_rate_hz = 0;        ///< stated by the camera; 0: not stated
-  double stable_k_per_min = 0.05;  ///< the level is stable once its drift is slower than this, > 0
+  double start_s = 0;              ///< time from power-on to the first image; all times are measured from power-on
+  double frame_rate_hz = 0;        ///< frame rate that the camera states; 0: not stated
+  double stable_k_per_min = 0.05;  ///< drift below which the level is stable, > 0
 };
 
 /// Successive frames of a uniform scene, in kelvin of the camera's scale.
@@ -34,7 +34,7 @@ struct WarmUpGroup {
   bool corrected = false;  ///< a correction happened since the previous group
 };
 
-/// Change of the level with the camera's own temperature, by least squares.
+/// Change of the level with the temperature of the camera, by least squares.
 struct TemperatureDrift {
   double slope = 0, slope_u = 0;  ///< K of the picture per K of the camera, with standard uncertainty
 };
@@ -45,7 +45,8 @@ struct WarmUp {
   /// Drift during the longest interval without a correction; empty if the fit failed, and `reasons` contains the
   /// reason.
   std::optional<DriftLaw> law{};
-  /// Time after which the level drifts more slowly than the limit; empty: not within the observation, or no law.
+  /// Time after which the drift of the level is below the limit. Empty: the drift stays above the limit during the
+  /// observation, or there is no law.
   std::optional<double> stable_s{};
   std::optional<TemperatureDrift> by_temperature{};
   std::vector<std::string> reasons;  ///< reasons for absent values
@@ -59,8 +60,8 @@ using ReadCameraTemperature = std::function<std::optional<double>()>;
 [[nodiscard]] Result<WarmUp> measure_warm_up(FrameTaker& taker, const WarmUpOptions& options,
                                              const ReadCameraTemperature& temperature, const std::stop_token& stop);
 
-/// Returns the time after which |d level / dt| stays below `k_per_min` according to the law; empty if that is after the
-/// last group. For an approach A (1 - exp(-t / T)) it is T ln(A / (T rate)).
+/// Returns the time after which |d level / dt| stays below `k_per_min` according to the law. Empty if this time is
+/// after the last group. For an approach A (1 - exp(-t / T)) it is T ln(A / (T rate)).
 [[nodiscard]] std::optional<double> stable_from(const DriftLaw& law, double k_per_min);
 
 }  // namespace todbench

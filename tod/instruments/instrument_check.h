@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks an instrument against its table, one command or query after another.
+// Checks whether an instrument agrees with its table. Commands and queries are sent one after another.
 #pragma once
 
 #include <stop_token>
@@ -15,8 +15,8 @@ namespace todbench {
 /// Outcome of a step.
 enum class StepOutcome {
   answered,   ///< the answer agrees with the table
-  failed,     ///< no answer, or a different one
-  not_tried,  ///< instrument not reached, or not in the table
+  failed,     ///< no answer, or an answer that differs from the table
+  not_tried,  ///< the instrument was not reached, or the table has no such command or query
 };
 
 /// One step of the check.
@@ -24,7 +24,7 @@ struct InstrumentStep {
   std::string name;  ///< "measured difference"
   std::string sent;  ///< commands as sent, joined by "; "
   StepOutcome outcome = StepOutcome::not_tried;
-  std::string said;  ///< the answer in this program's units, or an error message
+  std::string said;  ///< answer in the units of this program, or an error message
 };
 
 /// Result of check_instrument().
@@ -39,7 +39,7 @@ struct InstrumentCheck {
 /// Commands that a check sends.
 enum class InstrumentCommands {
   none,      ///< queries only: no motion
-  in_place,  ///< also commands, each with the instrument's present value
+  in_place,  ///< queries and commands; each command sets the present value of the instrument
 };
 
 /// Checks an instrument. Continues after a failed step and reconnects if needed. Errors: `invalid_input` (address),

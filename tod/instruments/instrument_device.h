@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A black body and a plate stage, controlled by their tables: numbers in K and mm, plates by name.
+// A black body and a plate stage, controlled by their tables. Numbers are in K and mm; plates are identified by name.
 #pragma once
 
 #include <array>
@@ -16,8 +16,9 @@
 
 namespace todbench {
 
-/// An instrument. It reconnects after a lost connection and then requires the same identity. Errors contain its name.
-/// If the instrument refuses a command or query of its table, the error is `disconnected`. One thread at a time.
+/// An instrument. After a lost connection the object reconnects and requires the same identity. Error messages contain
+/// the name of the instrument. If the instrument refuses a command or query of its table, the error is `disconnected`.
+/// One thread at a time.
 class InstrumentDevice {
  public:
   InstrumentDevice(std::string role, std::string endpoint, ScpiClientOptions options, InstrumentTable table);
@@ -33,14 +34,14 @@ class InstrumentDevice {
   /// Returns the numbers in the answer to a query, unconverted.
   [[nodiscard]] Result<std::vector<double>> numbers(const NumberQuestion& question, std::size_t count,
                                                     const std::stop_token& stop);
-  /// Returns whether the instrument is settled; true also if it has no such query.
+  /// Returns whether the instrument has settled. Also true if the table has no query for it.
   [[nodiscard]] Result<bool> is_settled(const std::stop_token& stop);
 
  private:
   std::string role_, endpoint_;
   ScpiClientOptions options_;
   InstrumentTable table_;
-  std::optional<ScpiClient> client_;  ///< kept after the connection closed, for its identity
+  std::optional<ScpiClient> client_;  ///< kept after the connection is closed, because it stores the identity
 };
 
 /// Values reported by a black body.
@@ -56,7 +57,7 @@ class BlackBodyDevice : public InstrumentDevice {
   /// Returns the lowest and the highest difference, in K.
   [[nodiscard]] Result<std::array<double, 2>> limits(const std::stop_token& stop);
   [[nodiscard]] Result<double> set_point(const std::stop_token& stop);
-  /// Commands a difference unless it is already the set-point.
+  /// Commands a temperature difference. Sends no command if this difference is already the set-point.
   [[nodiscard]] Result<void> command(double delta_t_k, const std::stop_token& stop);
   [[nodiscard]] Result<BlackBodyReading> read(const std::stop_token& stop);
   [[nodiscard]] Result<double> measured(const std::stop_token& stop);
@@ -69,8 +70,8 @@ class BlackBodyDevice : public InstrumentDevice {
   /// has an absolute set-point.
   [[nodiscard]] Result<std::array<double, 2>> absolute_limits(const std::stop_token& stop);
   [[nodiscard]] Result<void> command_absolute(double temperature_k, const std::stop_token& stop);
-  /// Reads the temperature of the radiator. Errors: also `invalid_input` for a value so far below the coldest set-point
-  /// that it must be in degrees Celsius.
+  /// Reads the temperature of the radiator. Errors: those of temperature(), and `invalid_input` if the value is so far
+  /// below the coldest set-point that its unit must be degrees Celsius.
   [[nodiscard]] Result<double> radiator(double coldest_k, const std::stop_token& stop);
 
  private:
@@ -78,7 +79,7 @@ class BlackBodyDevice : public InstrumentDevice {
   [[nodiscard]] Result<double> difference(const NumberQuestion& question, const std::stop_token& stop);
 };
 
-/// Range of positions, and plates of a stage.
+/// Positions and plates that a stage can present.
 struct StageLimits {
   cv::Point2d min_mm, max_mm;
   std::vector<std::string> plates;
@@ -90,9 +91,9 @@ class StageDevice : public InstrumentDevice {
   using InstrumentDevice::InstrumentDevice;
   [[nodiscard]] Result<StageLimits> limits(const std::stop_token& stop);
   [[nodiscard]] bool holds(Mounting mounting) const;
-  /// Commands plate, mounting and place if they differ from the set-points.
+  /// Commands those of plate, mounting and position that differ from the set-points.
   [[nodiscard]] Result<void> command(const TargetState& state, const std::stop_token& stop);
-  /// Reads plate, mounting and place. Values that the stage does not report are taken from `asked`.
+  /// Reads plate, mounting and position. Values that the stage does not report are copied from `asked`.
   [[nodiscard]] Result<TargetState> read(const TargetState& asked, const std::stop_token& stop);
 
   [[nodiscard]] Result<std::string> plate(const std::string& query, const std::stop_token& stop);
@@ -100,7 +101,7 @@ class StageDevice : public InstrumentDevice {
   /// Returns the lowest and the highest speed of a run, in mm/s. Precondition, also of run_along_x(): the stage has
   /// runs.
   [[nodiscard]] Result<std::array<double, 2>> run_speeds(const std::stop_token& stop);
-  /// Commands a run along x and reads the run that the stage reports.
+  /// Commands a run along x and returns the run that the stage reports.
   [[nodiscard]] Result<PlateRun> run_along_x(double to_mm, double speed_mm_s, const std::stop_token& stop);
   /// Reads a position. Precondition: the stage has positions.
   [[nodiscard]] Result<cv::Point2d> position(const NumberQuestion& question, const std::stop_token& stop);

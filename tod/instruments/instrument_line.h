@@ -19,8 +19,8 @@ struct InstrumentAddress {
   enum class Kind { tcp, serial, vxi11 };
   Kind kind = Kind::tcp;
   std::string host;
-  std::uint16_t port = 0;  ///< for VXI-11: 0 queries the port mapper of the host
-  std::string device;      ///< path of a serial port; for VXI-11 the logical instrument, "inst0"
+  std::uint16_t port = 0;  ///< for VXI-11, 0: the port mapper of the host is queried
+  std::string device;      ///< path of a serial port; for VXI-11 the logical instrument, for example "inst0"
 };
 
 /// Parses "HOST:PORT", "[IPv6]:PORT" or "HOST" (with the default `port`) for TCP, "serial:/dev/NAME", or
@@ -36,15 +36,15 @@ class InstrumentLine {
   [[nodiscard]] virtual Result<void> send(std::string_view bytes, TimePoint deadline, const std::stop_token& stop) = 0;
   /// Returns the received bytes, at least one. Errors as send().
   [[nodiscard]] virtual Result<std::string> receive(TimePoint deadline, const std::stop_token& stop) = 0;
-  /// Returns true if a second query before the answer to the first would cancel the first (IEEE 488.2, 6.3.2.3:
-  /// INTERRUPTED).
+  /// Returns true if a query must be answered before the next query is sent. The next query would otherwise cancel it
+  /// (IEEE 488.2, 6.3.2.3: INTERRUPTED).
   [[nodiscard]] virtual bool one_at_a_time() const { return false; }
 };
 
 /// Returns a connected, non-blocking TCP socket.
 [[nodiscard]] Result<Descriptor> connect_tcp(const std::string& host, std::uint16_t port,
                                              InstrumentLine::TimePoint deadline, const std::stop_token& stop);
-/// Sends all of `bytes` over a non-blocking descriptor. A socket raises no signal.
+/// Sends all of `bytes` over a non-blocking descriptor. Raises no signal if the peer has closed a socket.
 [[nodiscard]] Result<void> send_all(int fd, std::string_view bytes, InstrumentLine::TimePoint deadline,
                                     const std::stop_token& stop);
 /// Receives 1 to 4096 bytes.

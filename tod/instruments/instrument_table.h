@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The command table of an instrument as data: commands, answers and settling. One value of this type describes any
-// black body or plate stage; it is read from a file (docs/reference/instruments.md).
+// The command table of an instrument as data: commands, answers and settling. A table describes any black body or plate
+// stage and is read from a file (docs/reference/instruments.md).
 #pragma once
 
 #include <array>
@@ -33,8 +33,8 @@ inline constexpr std::array serial_bauds{1200, 2400, 4800, 9600, 19200, 38400, 5
 struct InstrumentSpeech {
   /// Time at which the error query is sent.
   enum class ErrorsAsked {
-    with_command,   ///< together with each command and query: the answer precedes the error report
-    after_command,  ///< after a query was answered
+    with_command,   ///< together with each command and query; the answer is received before the error report
+    after_command,  ///< after the answer to a query
   };
   std::string ending = "\n";               ///< line end after each command
   char answer_ending = '\n';               ///< last character of an answer; a preceding carriage return is removed
@@ -44,19 +44,20 @@ struct InstrumentSpeech {
   SerialSettings serial{};
 
   std::string clear = "*CLS";            ///< sent before the first query; empty: none
-  std::string identity_query = "*IDN?";  ///< empty: the instrument has none
-  bool identity_of_four = true;   ///< vendor,model,serial,firmware (IEEE 488.2, 10.14); false: any line is the model
+  std::string identity_query = "*IDN?";  ///< identity query; empty: the instrument has no identity query
+  /// True: the answer is vendor,model,serial,firmware (IEEE 488.2, 10.14); false: the whole line is the model.
+  bool identity_of_four = true;
   std::string identity_contains;  ///< text that the identity must contain
 
-  std::string error_query = "SYST:ERR?";  ///< empty: the instrument does not report refusals
+  std::string error_query = "SYST:ERR?";  ///< error query; empty: the instrument does not report refusals
   ErrorsAsked errors_asked = ErrorsAsked::with_command;
-  /// Answers that mean no error; if empty, 0,"..." means no error (SCPI-99 volume 1, 21.8).
+  /// Answers to the error query that mean no error. Empty: the answer 0,"..." means no error (SCPI-99 volume 1, 21.8).
   std::vector<std::string> no_error;
   std::string acknowledgement;        ///< answer to a command that is not a query; empty: none
-  std::vector<std::string> refusals;  ///< beginnings of answers that mean a refusal
+  std::vector<std::string> refusals;  ///< an answer that begins with one of these texts is a refusal
 };
 
-/// A unit of the file: value in this program's units = value * scale + offset.
+/// A unit of the file. Value in the units of this program = value in this unit * scale + offset.
 struct InstrumentUnit {
   std::string name;
   double scale = 1, offset = 0;
@@ -71,47 +72,48 @@ struct InstrumentUnit {
 /// Queries for numbers: one query for all numbers, or one for each.
 struct NumberQuestion {
   std::vector<std::string> queries;
-  std::string answer;  ///< form of each answer, "{}" for a number: "{} K"; empty: the expected numbers, separated by
-                       ///< commas
+  /// Form of each answer, in which "{}" stands for a number, for example "{} K". Empty: the expected numbers, separated
+  /// by commas.
+  std::string answer;
   [[nodiscard]] bool asks() const { return !queries.empty(); }
 };
 
 /// Conditions for a settled instrument. All stated conditions must hold.
 struct SettledRule {
-  std::string query;                 ///< empty: not queried
-  std::optional<int> bit;            ///< number of a bit in a 16-bit register; empty: `answers` applies
-  bool bit_means_settling = true;    ///< the bit is set while settling (true) or once settled (false)
+  std::string query;                 ///< query of the settling state; empty: not queried
+  std::optional<int> bit;            ///< number of a bit in a 16-bit register; empty: `answers` is used
+  bool bit_means_settling = true;    ///< true: the bit is set while settling; false: the bit is set when settled
   std::vector<std::string> answers;  ///< answers that mean settled, if `bit` is empty
   double dwell_s = 0;                ///< time that the value must stay within the tolerance
 };
 
 /// Absolute set-point of a black body, in BlackBodyWords::absolute_unit.
 struct AbsoluteWords {
-  int decimals = 4;          ///< of the number in a command
+  int decimals = 4;          ///< number of decimals in a command
   std::string set;           ///< "SOUR:TEMP:ABS {}"
-  NumberQuestion set_point;  ///< empty: the set-point is commanded each time
+  NumberQuestion set_point;  ///< query of the set-point; empty: the set-point is commanded each time
   NumberQuestion limits;     ///< lowest and highest; empty: limits_k
   std::array<double, 2> limits_k{0, 0};
-  double tolerance_k = 0.002;  ///< largest difference between the radiator's reading and the set-point that is accepted
+  double tolerance_k = 0.002;  ///< largest accepted difference between the reading of the radiator and the set-point
 };
 
 /// A differential black body.
 struct BlackBodyWords {
   InstrumentUnit unit{"K"};
-  int decimals = 4;          ///< of the number in a command
+  int decimals = 4;          ///< number of decimals in a command
   std::string set;           ///< "SOUR:TEMP:DIFF {}"
-  NumberQuestion set_point;  ///< empty: the set-point is commanded each time
+  NumberQuestion set_point;  ///< query of the set-point; empty: the set-point is commanded each time
   NumberQuestion limits;     ///< lowest and highest; empty: limits_k
   std::array<double, 2> limits_k{0, 0};
   NumberQuestion measured;
-  double tolerance_k = 0.002;  ///< largest difference between measured and requested value that is accepted
+  double tolerance_k = 0.002;  ///< largest accepted difference between measured and requested value
   NumberQuestion plate;        ///< temperature of the surround; empty: not reported
   NumberQuestion radiator;     ///< temperature of the black body behind the plate; empty: not reported
   InstrumentUnit absolute_unit{"K"};
-  std::optional<AbsoluteWords> absolute{};  ///< only with a `radiator`
+  std::optional<AbsoluteWords> absolute{};  ///< absolute set-point; only with a `radiator`
 };
 
-/// Positions of a plate in its own plane. Without this table, the operator shifts the plate by hand.
+/// Positions of a plate in its own plane. If a stage has no positions, the operator shifts the plate by hand.
 struct StagePosition {
   InstrumentUnit unit{"mm"};
   int decimals = 4;
@@ -123,8 +125,8 @@ struct StagePosition {
   double tolerance_mm = 0.005;
 };
 
-/// Runs along x at constant speed, in the unit of the position and in this unit per second. Without this table the
-/// stage cannot run.
+/// Runs along x at constant speed. Positions have the unit of StagePosition, and speeds this unit per second. Without
+/// this part of the table the stage cannot run.
 struct StageRun {
   std::string set;        ///< "SOUR:SCAN {},{}": destination, speed
   NumberQuestion limits;  ///< lowest and highest speed; empty: limits_mm_s
@@ -135,21 +137,22 @@ struct StageRun {
 
 /// A selection by a word, such as a plate or a mounting.
 struct StageChoice {
-  std::string set;        ///< "ROUT:PLAT {}"; empty: only one exists
+  std::string set;        ///< for example "ROUT:PLAT {}"; empty: there is only one plate or mounting
   std::string set_point;  ///< query of the requested word; empty: the word is commanded each time
-  std::string measured;   ///< query of the word in place; empty: the requested word is assumed once settled
+  std::string measured;   ///< query of the present word; empty: the requested word is assumed after settling
 };
 
 /// A stage that moves plates in front of the camera.
 struct StageWords {
   StageChoice plate;
-  bool quoted = false;                           ///< plates are SCPI string data, quotes doubled
+  bool quoted = false;                           ///< plates are SCPI string data with doubled quotes
   std::string catalogue;                         ///< query of the names of all plates; empty: `plates`
-  std::vector<std::string> plates, plate_words;  ///< names of plates and the stage's words for them
+  std::vector<std::string> plates, plate_words;  ///< names of the plates, and the words of the stage for them
   StageChoice mounting;
-  std::array<std::string, all_mountings.size()> mounting_words;  ///< empty: this mounting is not available
+  /// Words of the stage, in the order of all_mountings. Empty word: this mounting is not available.
+  std::array<std::string, all_mountings.size()> mounting_words;
   std::optional<StagePosition> position;
-  std::optional<StageRun> run;  ///< only with a position
+  std::optional<StageRun> run;  ///< runs; only with a position
 };
 
 /// Kind of an instrument.
@@ -158,8 +161,8 @@ enum class InstrumentKind { black_body, stage };
 
 /// Command table of an instrument.
 struct InstrumentTable {
-  std::string name;         ///< of the file
-  std::string description;  ///< make and model, for people
+  std::string name;         ///< name of the file
+  std::string description;  ///< make and model, shown to the user
   InstrumentKind kind = InstrumentKind::black_body;
   InstrumentSpeech speech;
   SettledRule settled;
@@ -167,12 +170,13 @@ struct InstrumentTable {
   StageWords stage;
 };
 
-/// Returns the numbers in an answer of the form `form`: "{}" stands for a number, blanks may differ, all other
-/// characters must agree. Empty if the answer does not fit or a number is not finite.
+/// Returns the numbers in an answer. In `form`, "{}" stands for a number. Blanks may differ, but all other characters
+/// must agree with `form`. Empty if the answer does not have this form, or if a number is not finite.
 [[nodiscard]] std::optional<std::vector<double>> numbers_in(std::string_view answer, std::string_view form);
 /// Returns the number of "{}" in a text.
 [[nodiscard]] std::size_t places_in(std::string_view form);
-/// Returns a command in which `words` replace "{}" in order. Precondition: as many "{}" as words.
+/// Returns a command: `form` with each "{}" replaced by the next element of `words`. Precondition: the numbers of "{}"
+/// and of words are equal.
 [[nodiscard]] std::string command_of(std::string_view form, const std::vector<std::string>& words);
 /// Returns `count` times "{}", separated by commas.
 [[nodiscard]] std::string comma_form(std::size_t count);

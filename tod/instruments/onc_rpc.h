@@ -26,7 +26,7 @@ class XdrWriter {
   std::string data_;
 };
 
-/// Reads XDR data. Results are empty once the data have ended prematurely.
+/// Reads XDR data. If the data end before a value is complete, this result and all later results are empty.
 class XdrReader {
  public:
   explicit XdrReader(std::string_view data) : data_(data) {}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Opens the transport for an address.
+// Opens the connection to an instrument.
 #pragma once
 
 #include <memory>
@@ -11,7 +11,8 @@
 
 namespace todbench {
 
-/// Opens the connection. Errors: `not_found` (no instrument, no access, no serial port, or timeout), `interrupted`.
+/// Opens the connection to an address. `serial`: settings if the address is a serial port. Errors: `not_found` (no
+/// instrument, no access, no serial port, or timeout), `interrupted`.
 [[nodiscard]] Result<std::unique_ptr<InstrumentLine>> open_line(const InstrumentAddress& address,
                                                                 const SerialSettings& serial,
                                                                 InstrumentLine::TimePoint deadline,

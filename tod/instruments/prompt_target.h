@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A manual bench: asks the operator for each change and waits until it is done.
+// A manual bench. The operator is asked for each change, and the program waits until the change is done.
 #pragma once
 
 #include <chrono>
@@ -16,14 +16,14 @@ namespace todbench {
 struct PromptTargetOptions {
   /// Description of the manual equipment, for the report.
   std::string description = "set by hand by the operator";
-  /// Time base of settling_s, which here is the time that the operator took.
+  /// Clock for settling_s. For this target settling_s is the time that the operator needed.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };
 
-/// Returns a target whose present() requests the changes since the last state and waits for the answer.
-/// PresentedTarget::state is the requested state, unchecked and without temperatures. sets_shift is false: for a new
-/// shift the operator is asked for a slight movement, and registration measures it. The answer `stop` results in
-/// `interrupted`. After any failure the next request states the complete state again.
+/// Returns a target whose present() asks the operator for the changes since the last state and waits for the answer.
+/// PresentedTarget::state is the requested state; it is not verified and has no temperatures. sets_shift is false: for
+/// a new shift the operator is asked to move the plate slightly, and registration measures the shift. If the answer is
+/// `stop`, the error is `interrupted`. After any failure, the next request contains the complete state.
 [[nodiscard]] std::unique_ptr<Target> prompt_target(AskOperator ask, PromptTargetOptions options = {});
 
 }  // namespace todbench

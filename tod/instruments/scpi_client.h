@@ -20,11 +20,14 @@ namespace todbench {
 /// Limits of a connection.
 struct ScpiClientOptions {
   std::chrono::milliseconds connect_timeout{3000};
-  std::chrono::milliseconds answer_timeout{1000};  ///< from sending a command to the last character of its answer
-  std::size_t longest_answer = 8192;  ///< characters; a peer that sends more without a line end is disconnected
+  /// Longest time from sending a command to the last character of its answer.
+  std::chrono::milliseconds answer_timeout{1000};
+  /// Number of characters; if a peer sends more characters without a line end, it is disconnected.
+  std::size_t longest_answer = 8192;
 };
 
-/// The four fields of *IDN? (IEEE 488.2, 10.14). Only `model` is set for an instrument without this form of answer.
+/// The four fields of the answer to *IDN? (IEEE 488.2, 10.14). If an instrument answers in another form, only `model`
+/// is set.
 struct ScpiIdentity {
   std::string vendor, model, serial, firmware;
   bool operator==(const ScpiIdentity&) const = default;
@@ -32,9 +35,9 @@ struct ScpiIdentity {
 /// Returns "vendor model, serial S".
 [[nodiscard]] std::string to_text(const ScpiIdentity& identity);
 
-/// A connection. One thread at a time. SYST:ERR? (or the error query of the table) follows each exchange, so a refused
-/// command is reported at once as an error. After `disconnected`, `timeout` or `interrupted` the connection is closed,
-/// because a late answer would be taken for the next one. Connect again then.
+/// A connection. One thread at a time. SYST:ERR? (or the error query of the table) is sent after each exchange, so a
+/// refused command is reported as an error at once. After `disconnected`, `timeout` or `interrupted` the connection is
+/// closed, because a late answer could be mistaken for the answer to the next query. Connect again after these errors.
 class ScpiClient {
  public:
   /// Connects to an instrument. `endpoint`: as for instrument_address(). Clears the instrument's error queue and sends

@@ -18,39 +18,40 @@ namespace todbench {
 
 /// Options of open_scpi_target().
 struct ScpiTargetOptions {
-  std::string black_body;  ///< as for instrument_address()
-  std::string stage;       ///< as for instrument_address()
+  std::string black_body;  ///< address of the black body, as for instrument_address()
+  std::string stage;       ///< address of the stage, as for instrument_address()
   InstrumentTable black_body_table;
   InstrumentTable stage_table;
-  std::chrono::milliseconds settle_timeout{600'000};  ///< for one present(), by `now`
+  std::chrono::milliseconds settle_timeout{600'000};  ///< longest time for one present(), by `now`
   std::chrono::milliseconds poll_interval{100};
-  std::chrono::milliseconds report_interval{500};  ///< time between calls of on_wait, by `now`, also before the first
-                                                   ///< call
+  /// Time between calls of on_wait, and before the first call, by `now`.
+  std::chrono::milliseconds report_interval{500};
   OnTargetWait on_wait{};
-  double settling_band = 0.1;  ///< largest relative distance from the set contrast for ContrastWait::within_band
-  /// Largest relative rate of the contrast for ContrastWait::within_band, 1/s. At the default, a lag of 0.1 s between
-  /// the triangles of a plate changes the contrast by 0.6 %.
+  double settling_band = 0.1;  ///< largest relative deviation from the set contrast for ContrastWait::within_band
+  /// Largest relative rate of the contrast for ContrastWait::within_band, 1/s. At the default rate, a lag of 0.1 s
+  /// between the triangles of a plate changes their contrast by 0.6 %.
   double max_relative_rate_per_s = 0.06;
-  /// States that a run will request. They are checked against limits and plates of the instruments during opening.
+  /// States that a run will request. open_scpi_target() checks them against limits and plates of the instruments.
   std::vector<TargetState> requested{};
-  std::vector<double> temperatures_k{};  ///< absolute temperatures that a run will request, checked likewise
+  /// Absolute temperatures that a run will request. They are checked like `requested`.
+  std::vector<double> temperatures_k{};
   ScpiClientOptions connection;
-  /// Time base of settle_timeout and settling_s.
+  /// Clock for settle_timeout and settling_s.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };
 
 /// Connects to both instruments, identifies them and reads their limits. Errors: those of ScpiClient::connect(), and
 /// `invalid_input` for a requested state beyond the limits.
 ///
-/// present() reads the set-points of each instrument and commands only those that differ, so that manual changes are
-/// corrected. An instrument without set-point queries is commanded each time. present() returns when both instruments
-/// report that they are settled *and* the measured values agree with the requested ones for the time that the tables
-/// require. PresentedTarget::state is the measured state.
+/// present() reads the set-points of each instrument and commands those that differ from the request. Manual changes
+/// are therefore corrected. An instrument without set-point queries is commanded each time. present() returns when two
+/// conditions are met: both instruments report that they have settled, *and* the measured values have agreed with the
+/// requested values for the time that the tables require. PresentedTarget::state is the measured state.
 ///
 /// Errors of present(): `invalid_input` (state beyond the instruments' limits, reported before any motion), `timeout`
-/// (contains the instrument, the requested and the reached value), `disconnected` (an instrument disconnects, refuses a
-/// command or reports an impossible temperature: below 0 K or above 5000 K). After `disconnected` the next present()
-/// reconnects and requires the same *IDN?.
+/// (the message contains the instrument, the requested and the reached value), `disconnected` (an instrument
+/// disconnects, refuses a command or reports an impossible temperature: below 0 K or above 5000 K). After
+/// `disconnected` the next present() reconnects and requires the same *IDN?.
 [[nodiscard]] Result<std::unique_ptr<Target>> open_scpi_target(ScpiTargetOptions options, const std::stop_token& stop);
 
 }  // namespace todbench

@@ -11,8 +11,8 @@
 
 namespace todbench {
 
-/// Opens a port in raw mode, non-blocking and exclusive, and discards waiting bytes. Errors: `not_found` (absent, in
-/// use, or settings refused; if access is denied, the message contains the remedy).
+/// Opens a port in raw mode, non-blocking and exclusive, and discards received bytes. Errors: `not_found` (the port is
+/// absent or in use, the settings are refused, or access is denied; in the last case the message states the remedy).
 [[nodiscard]] Result<Descriptor> open_serial_port(const std::string& path, const SerialSettings& settings);
 
 }  // namespace todbench

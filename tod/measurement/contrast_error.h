@@ -20,16 +20,16 @@ struct ContrastMeasurement {
   std::vector<ReferenceTriangle> references;  ///< each with its contrast in kelvin
 };
 
-/// Returns the standard error of the mean over measurements of one contrast. Two kinds of errors remain in that mean:
-/// errors common to the triangles of a set-up, and errors of the detectors at a place (fixed pattern). Set-ups and
-/// places are therefore two-way clusters, V_set_up + V_place - V_triangle (Cameron, Gelbach and Miller 2011), at least
-/// the variance of either alone. Triangles whose centroids are closer than half their size count as one place, because
-/// mountings and plates may image them onto the same detectors. Empty with fewer than two set-ups and fewer than two
-/// places.
+/// Returns the standard error of the mean over measurements of one contrast. Two kinds of errors do not cancel in this
+/// mean: errors common to the triangles of a set-up, and errors of the detectors at one position in the picture (fixed
+/// pattern). Set-ups and positions are therefore two-way clusters. The variance is V_set_up + V_place - V_triangle
+/// (Cameron, Gelbach and Miller 2011), at least V_set_up and at least V_place. Triangles whose centroids are closer
+/// than half their size have the same position, because mountings and plates may image them onto the same detectors.
+/// Empty with fewer than two set-ups and fewer than two positions.
 [[nodiscard]] std::optional<ContrastError> contrast_error(std::span<const ContrastMeasurement> measurements);
 
-/// Returns contrast_error() for each set contrast, at least the error due to noise; omits those that cannot be
-/// estimated.
+/// Returns contrast_error() for each set contrast, at least the error due to noise. Contrasts whose error cannot be
+/// estimated are omitted.
 [[nodiscard]] std::map<double, ContrastError> contrast_errors(std::span<const ContrastMeasurement> measurements);
 
 /// Sets the standard errors of the contrasts in the points of a curve, if they can be estimated from `measurements`.

@@ -9,24 +9,25 @@
 
 namespace todbench {
 
-/// Estimated lag in seconds, > 0 if small triangles change after large ones.
+/// Estimated lag in seconds. Positive: small triangles change later than large triangles.
 struct LagEstimate {
   double lag_s = 0;
   double standard_error_s = 0;
   double degrees_of_freedom = 1;
-  /// Returns the distance from `lag_s` that chance exceeds with probability 1/300, so 1 % for the three estimates of a
-  /// run.
+  /// Returns the deviation of `lag_s` that is exceeded by chance with probability 1/300. For the three estimates of a
+  /// run together, this is 1 %.
   [[nodiscard]] double chance_s() const;
-  /// Returns whether the magnitude of the lag exceeds `stated_s` by more than chance.
+  /// Returns whether the magnitude of the lag is above `stated_s` plus chance_s().
   [[nodiscard]] bool exceeds(double stated_s) const;
 };
 
-/// Lags of a run. Small triangles have the contrast M = r (L - lag dL/dt) + c, where L is the contrast of large
-/// triangles. Ramps up and down yield the lag of all set-ups. Only presentations with a held contrast distinguish r
-/// from a lag of opposite sign in ramps up and down.
+/// Lags of a run. The model of the contrast of small triangles is M = r (L - lag dL/dt) + c, where L is the contrast of
+/// large triangles. The lag common to ramps up and down is estimated from all set-ups. Separate lags of ramps up and
+/// down require presentations with a held contrast, because ramps alone do not distinguish an error of r from lags of
+/// opposite sign.
 struct ContrastLag {
-  LagEstimate all;                          ///< from all set-ups, ramps up and down together
-  std::optional<LagEstimate> down{}, up{};  ///< from the set-up with the held contrast
+  LagEstimate all;                          ///< lag from all set-ups, ramps up and down together
+  std::optional<LagEstimate> down{}, up{};  ///< lags of ramps down and up, from the set-up with the held contrast
 };
 
 /// Returns the lags by weighted least squares. `step_s`: time between successive presentations, used if the target

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Selects frames that may be measured: accepted by the integrity gate, exposed after the last change, not during a
-// correction.
+// Selects the frames that may be measured. Such frames are accepted by the integrity gate, exposed after the last
+// change of the scene, and not exposed during a correction.
 #pragma once
 
 #include <cstdint>
@@ -29,16 +29,18 @@ struct RejectedFrame {
 /// Options of FrameTaker.
 struct FrameTakerOptions {
   IntegrityOptions integrity;
-  int frames_after_change = 2;       ///< exposures discarded after a change of the scene, because they were in transfer
-  double nuc_wait_s = 1;             ///< frames within this time after a correction are rejected
-  double max_rejected_share = 0.05;  ///< a larger share, after 100 frames, is an `integrity` error
-  std::chrono::milliseconds frame_timeout{2000};            ///< longest time without a frame; then `disconnected`
+  /// Number of exposures discarded after a change of the scene, because they may show the scene before it.
+  int frames_after_change = 2;
+  double nuc_wait_s = 1;                          ///< frames within this time after a correction are rejected
+  double max_rejected_share = 0.05;               ///< a larger share, after 100 frames, is an `integrity` error
+  std::chrono::milliseconds frame_timeout{2000};  ///< longest time without a frame; then `disconnected`
   std::function<void(const RejectedFrame&)> on_rejected{};  ///< called for every rejected frame; may be empty
-  FrameGain gain = FrameGain::constant;  ///< gain of the camera's frames: noise does not count as a change of gain
+  /// Gain of the camera's frames. It determines how noise is computed from differences of frames.
+  FrameGain gain = FrameGain::constant;
   std::shared_ptr<const RadiometricScale> scale{};  ///< replaces the scale of every frame; null: each frame's own
 };
 
-/// Average of accepted frames in kelvin, with the noise from their differences.
+/// Average of accepted frames in kelvin, with the noise computed from the differences of the frames.
 struct AveragedPicture {
   cv::Mat1d kelvin;
   cv::Mat1w lowest, highest;  ///< smallest and largest count of each pixel over the frames
@@ -52,14 +54,14 @@ struct AveragedPicture {
   /// Unbiased variances per frame of the noise that the pixels of a row or column share and that changes from frame to
   /// frame. May be negative by chance. Empty for a single frame.
   std::optional<double> row_variance_k2, column_variance_k2;
-  /// Largest integer that divides all differences between frames. It is above 1 if a format leaves bits empty or a
-  /// camera rounds to steps of several counts; 0: no differences.
+  /// Largest integer that divides all differences between frames. It is above 1 if a format does not use the lowest
+  /// bits, or if a camera rounds to steps of several counts. 0: there are no differences.
   int count_step = 0;
 };
 
-/// Returns the noise of a pixel in one frame, in kelvin: temporal_noise_k, divided by sqrt(1 - rho) if the lag-1
-/// correlation rho is noticeable. The reason is that differences of successive frames contain only this part of the
-/// noise.
+/// Returns the noise of a pixel in one frame, in kelvin. If the lag-1 correlation rho is at least 0.05, it is
+/// temporal_noise_k / sqrt(1 - rho), because differences of successive frames contain only the part sqrt(1 - rho) of
+/// the noise. Otherwise it is temporal_noise_k.
 [[nodiscard]] double noise_of_one_frame(const AveragedPicture& picture);
 
 /// Takes frames from a started source. One thread at a time.
@@ -67,20 +69,19 @@ class FrameTaker {
  public:
   FrameTaker(FrameSource& source, FrameTakerOptions options);
 
-  /// Announces a change of the scene: frames that arrived before `now_ns`, on the clock of Frame::host_time_ns, are
-  /// discarded.
+  /// Announces a change of the scene. Frames that arrived before `now_ns` (clock of Frame::host_time_ns) are discarded.
   void scene_changed(std::int64_t now_ns);
   /// Commands a non-uniformity correction.
   [[nodiscard]] Result<void> correct_nonuniformity();
-  /// Announces that the command was carried out: frames are rejected until the waiting time after `now_ns` has passed.
+  /// Announces that the camera has carried out the command. Frames are rejected until nuc_wait_s after `now_ns`.
   void corrected(std::int64_t now_ns);
 
   /// Returns the next accepted frame. Errors: `integrity` (too many rejected), `disconnected` (lost, or no frame within
   /// the frame timeout), `interrupted`.
   [[nodiscard]] Result<Frame> next(std::stop_token stop);
   /// Takes and judges frames while the target changes, until `enough` returns true. `enough` is called before each
-  /// request to the source, with the number of requests so far. The scene may move, and a source without frames is not
-  /// an error. Other errors: those of next().
+  /// request to the source, with the number of previous requests. The scene may move. A source that sends no frames is
+  /// not an error. Other errors: those of next().
   [[nodiscard]] Result<void> take_while_presenting(const std::function<bool(std::int64_t calls)>& enough);
   /// Returns the next accepted frame of a moving scene. Discards no frame, and does not treat a changing picture as a
   /// correction. Errors: those of next().
@@ -89,7 +90,7 @@ class FrameTaker {
   [[nodiscard]] Result<void> discard(std::stop_token stop);
   /// Function that is called with each frame of an average and its picture in kelvin.
   using EachFrame = std::function<void(const Frame&, const cv::Mat1d& kelvin)>;
-  /// Averages `count` accepted frames. Calls `each` for each of them; it may be empty.
+  /// Averages `count` accepted frames. `each`: called for each of these frames; may be empty.
   [[nodiscard]] Result<AveragedPicture> average(int count, std::stop_token stop, const EachFrame& each = {});
 
   [[nodiscard]] std::uint64_t used() const { return used_; }
@@ -98,7 +99,8 @@ class FrameTaker {
   [[nodiscard]] std::map<std::string, std::uint64_t> rejected() const;
   /// Returns a sentence if the camera sends each exposure several times; otherwise empty.
   [[nodiscard]] std::string cadence() const { return cadence_.sentence(); }
-  /// Returns whether any frame stated if it was exposed during a correction.
+  /// Returns whether the camera reports corrections: at least one frame stated whether it was exposed during a
+  /// correction.
   [[nodiscard]] bool camera_tells_of_corrections() const { return told_of_corrections_; }
   /// Returns the seconds between the last correction (commanded, reported by the camera, or detected in the picture)
   /// and a frame; negative if no correction is known.
@@ -123,7 +125,7 @@ class FrameTaker {
   RepeatCadence cadence_;
   CorrectionWatch watch_{CorrectionWatchOptions{}};
   std::int64_t valid_from_ns_ = 0;            ///< host time of the last change of scene
-  int to_discard_ = 0;                        ///< exposures that were in transfer during the change
+  int to_discard_ = 0;                        ///< number of exposures still to be discarded after the change
   std::optional<std::int64_t> nuc_ns_;        ///< host time of the last correction
   std::optional<std::int64_t> known_nuc_ns_;  ///< host time of the last correction that was commanded or reported
   std::uint64_t used_ = 0;

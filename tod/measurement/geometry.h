@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks whether a plate can be measured at a distance: size of the picture and windows of the observer.
+// Checks whether a plate can be measured at a distance: whether it fits into the picture, and whether the windows of
+// the observer are free of other triangles.
 #pragma once
 
 #include <cstddef>
@@ -21,12 +22,12 @@ namespace todbench {
 struct PlateBeyondPicture {
   std::string plate;
   cv::Size2d size_mm;
-  cv::Size2d size_px;     ///< at `distance_m`
+  cv::Size2d size_px;     ///< size of the plate in the picture at `distance_m`
   double distance_m = 0;  ///< entrance pupil to plate
   cv::Size picture;
 };
 
-/// The observer's window round one triangle contains a part of another.
+/// The observer's window round one triangle contains a part of another triangle.
 struct TrianglesTooNear {
   std::string plate;
   TouchingWindow window;
@@ -44,7 +45,7 @@ using Misfit = std::variant<PlateBeyondPicture, TrianglesTooNear>;
 /// has 640 x 480 pixels"
 [[nodiscard]] std::string sentence(const Misfit& misfit);
 
-/// Returns sentences for the first `most` misfits, and the number of the others.
+/// Returns sentences for the first `most` misfits, and states the number of the remaining misfits.
 [[nodiscard]] std::string sentences(const std::vector<Misfit>& misfits, std::size_t most);
 
 }  // namespace todbench

@@ -18,15 +18,16 @@ namespace todbench {
 /// Unit in which the contrast of the large triangles is measured.
 enum class ContrastUnit {
   kelvin,  ///< kelvin of the camera's temperature scale
-  /// For a camera with gain control. The target reports the contrast in kelvin; the large triangles of every frame show
-  /// it in grey levels.
+  /// For a camera with gain control. The target reports the contrast in kelvin, and the contrast in grey levels is
+  /// measured at the large triangles of every frame.
   grey_levels,
 };
 inline constexpr std::array all_contrast_units{ContrastUnit::kelvin, ContrastUnit::grey_levels};
 [[nodiscard]] constexpr std::string_view to_string(ContrastUnit unit) {
   return unit == ContrastUnit::grey_levels ? "grey-levels" : "kelvin";
 }
-/// Returns the estimator of levels in this unit: grey levels are coarse, kelvin are fine.
+/// Returns the estimator of levels for this unit: the mean for grey levels, because their steps are coarse; the median
+/// for kelvin.
 [[nodiscard]] constexpr LevelEstimate level_estimate(ContrastUnit unit) {
   return unit == ContrastUnit::grey_levels ? LevelEstimate::mean : LevelEstimate::median;
 }
@@ -34,16 +35,18 @@ inline constexpr std::array all_contrast_units{ContrastUnit::kelvin, ContrastUni
 /// Resolution of the grey levels of a picture near its surround.
 struct GreySteps {
   double noise_levels = 0;  ///< standard deviation of a pixel in a frame, rounding included
-  double step_levels = 1;   ///< mean spacing of the levels that occur; above 1 if a gain spreads coarser counts
+  /// Mean distance between the levels that occur; above 1 if a gain enlarges the steps of coarser counts.
+  double step_levels = 1;
   /// Returns the standard deviation of the noise before rounding, in steps (Sheppard's correction).
   [[nodiscard]] double noise_steps() const;
-  /// Returns rounding_variance() of this noise. Without noise, a level between two steps appears as noise of up to half
-  /// a step. Measured noise of up to 0.52 steps is therefore treated as zero.
+  /// Returns rounding_variance() of this noise. Even without noise, a level between two steps causes a measured noise
+  /// of up to half a step. Measured noise of up to 0.52 steps is therefore treated as zero.
   [[nodiscard]] double rounding_variance_steps() const;
 };
 
-/// Returns the spacing of the counts within three standard deviations of the median. `lowest`, `highest`: smallest and
-/// largest count of each pixel. If only one count occurs despite the noise, the step is the distance to the next count.
+/// Returns the resolution of the counts within three standard deviations of the median. `lowest`, `highest`: smallest
+/// and largest count of each pixel. If only one count occurs in this range despite noise, the step is the distance to
+/// the next count that occurs.
 [[nodiscard]] GreySteps grey_steps(const cv::Mat1w& lowest, const cv::Mat1w& highest, double noise_levels);
 
 /// Returns the variance of the mean of many rounded values, in squared steps, averaged over all positions of the true
@@ -53,17 +56,17 @@ struct GreySteps {
 
 /// Contrast of the large triangles of one frame, in grey levels.
 struct GreyContrast {
-  double levels = 0;                ///< mean over the triangles
-  double standard_uncertainty = 0;  ///< from the scatter over the triangles and from rounding, which all triangles
-                                    ///< share
-  double degrees_of_freedom = 1;    ///< Welch and Satterthwaite
+  double levels = 0;  ///< mean over the triangles
+  /// From the scatter over the triangles, and from rounding, whose error is common to all triangles.
+  double standard_uncertainty = 0;
+  double degrees_of_freedom = 1;  ///< Welch and Satterthwaite
   int triangles = 0;
   /// Returns half of the 95 % interval.
   [[nodiscard]] double half_width() const;
 };
 
-/// Measures the contrast by effective_contrast() with mean levels and adds the uncertainty of rounding. Errors: those
-/// of effective_contrast(); `calibration` for a single triangle, because its scatter is not known.
+/// Measures the contrast by effective_contrast() with mean levels, and adds the uncertainty of rounding. Errors: those
+/// of effective_contrast(); `calibration` if there is only one triangle, because the scatter is then not known.
 [[nodiscard]] Result<GreyContrast> grey_contrast(const cv::Mat1d& levels, const TargetPlate& mounted_plate,
                                                  const Registration& registration, double min_size_px,
                                                  const GreySteps& steps);

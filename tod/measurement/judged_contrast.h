@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contrast and noise of pictures that processing stages computed from a camera's frames. Stages may change the scale.
-// An observer judges relative to the contrast, so the contrast of the judged picture is decisive, not the contrast of
-// the camera's frames.
+// Contrast and noise of the pictures that processing stages compute from the frames of a camera. Stages may change the
+// scale. An observer judges relative to the contrast, so the contrast of the judged picture must be used, not that of
+// the camera's frame.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -21,12 +21,14 @@ namespace todbench {
 
 /// Scale of the judged pictures of one set-up and contrast, relative to the scale of the camera.
 struct JudgedScale {
-  double gain = 1;  ///< contrast of the large triangles divided by that in the camera's frames; negative: inverted
+  /// Contrast of the large triangles in the judged pictures divided by that in the camera's frames. Negative: the
+  /// stages invert the contrast.
+  double gain = 1;
   double gain_error = 0;    ///< standard error, from the scatter over the triangles
   double camera_level = 0;  ///< contrast of the large triangles in the camera's frames, on its scale
   double noise_ratio = 1;   ///< noise of a judged frame divided by that of a camera's frame, each on its own scale
   bool changes = false;     ///< the gain changes from frame to frame and is measured in each frame
-  GreySteps steps{};        ///< of the judged counts
+  GreySteps steps{};        ///< resolution of the judged counts
 };
 /// Record of one set-up and contrast.
 struct JudgedContrast {
@@ -35,21 +37,21 @@ struct JudgedContrast {
   double set_delta_t_k = 0;
   double delta_t_k = 0;         ///< before the stages, reported by the target
   double judged_delta_t_k = 0;  ///< after the stages, on the camera's scale
-  double noise_k = 0;           ///< value passed to the observer, referred to the contrast before the stages
+  double noise_k = 0;           ///< noise that is passed to the observer, relative to the contrast before the stages
   JudgedScale scale{};
 };
 
 /// Returns whether any stage changed the frame.
 [[nodiscard]] bool behind_stages(const Frame& frame);
 
-/// Returns the contrast of the large triangles in one judged frame, by means, on the scale of its counts. If the judged
-/// picture is finer than the camera's, only every samples_per_pixel-th sample is used. Errors: those of
-/// effective_contrast() and of the scale.
+/// Returns the contrast of the large triangles in one judged frame, computed from mean levels, on the scale of its
+/// counts. If the judged picture has several samples per pixel of the camera, only one sample per pixel is used.
+/// Errors: those of effective_contrast() and of the scale.
 [[nodiscard]] Result<EffectiveContrast> judged_levels(const Frame& frame, const TargetPlate& mounted_plate,
                                                       const Registration& registration, double min_size_px);
 
-/// Memory of the noise after the stages relative to the memory of the camera's noise, from successive frames of one
-/// scene.
+/// Ratio of two noise memories (LagDifferences::memory()): that of the noise after the stages, and that of the camera's
+/// noise. Computed from successive frames of one scene.
 class JudgedMemory {
  public:
   explicit JudgedMemory(int frames) : camera_(frames, FrameGain::changing), judged_(frames, FrameGain::changing) {}
@@ -62,7 +64,8 @@ class JudgedMemory {
   LagDifferences camera_, judged_;
 };
 
-/// Collects the frames in which the contrast of a set-up is measured. The arguments must outlive it.
+/// Collects the frames in which the contrast of a set-up is measured. The arguments of the constructor must outlive the
+/// object.
 class JudgedFrames {
  public:
   JudgedFrames(const TargetPlate& mounted_plate, const Registration& registration, double min_size_px, int frames)
@@ -76,8 +79,8 @@ class JudgedFrames {
   /// Returns the scale of the judged pictures; empty without stages. `memory_ratio`: JudgedMemory::ratio(). Errors:
   /// those of judged_levels(); `not_identifiable` (the judged pictures do not show the large triangles).
   [[nodiscard]] Result<std::optional<JudgedScale>> scale(double memory_ratio) const;
-  /// Average of the judged frames, on the camera's scale, and the registration in it. Empty without stages, or if the
-  /// judged pictures are finer than the camera's.
+  /// Average of the judged frames on the camera's scale, and the registration in this average. Empty without stages, or
+  /// if the judged pictures have more samples than the camera's frames.
   struct Average {
     AveragedPicture picture;
     Registration registration;
@@ -91,7 +94,7 @@ class JudgedFrames {
   const Registration& registration_;
   double min_size_px_;
   LagDifferences camera_noise_, judged_noise_;
-  std::vector<std::vector<double>> camera_, judged_;  ///< by frame and triangle
+  std::vector<std::vector<double>> camera_, judged_;  ///< contrast of each triangle in each frame
   cv::Mat1w lowest_, highest_;
   cv::Mat1d kelvin_sum_;
   cv::Point2d first_px_ = {0, 0};
@@ -106,7 +109,7 @@ class JudgedFrames {
                                          const Registration& registration, double min_size_px,
                                          const JudgedScale& scale);
 
-/// Returns the number of judged samples of the window that were clipped at an end of the counts.
+/// Returns the number of judged samples in the window that were clipped at the lowest or the highest count.
 [[nodiscard]] int cut_off_samples(const Frame& frame, const cv::Rect& window);
 
 }  // namespace todbench

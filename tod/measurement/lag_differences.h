@@ -16,13 +16,14 @@ enum class FrameGain {
   changing,  ///< gain control: the gain differs between frames
 };
 
-/// Returns `to` minus `from`, two pictures of one scene. With a changing gain, the part proportional to their mean is
-/// removed by least squares: a frame with another gain differs by a multiple of the scene, which is not noise. The
-/// noise of the result corresponds to the gain 2 a b / (a + b), where a and b are the gains of the two pictures.
+/// Returns the picture `to` minus the picture `from`; both show the same scene. With a changing gain, the two pictures
+/// also differ by a multiple of the scene, which is not noise. The part of the difference that is proportional to their
+/// mean is therefore removed by least squares. The noise of the result corresponds to the gain 2 a b / (a + b), where a
+/// and b are the gains of the two pictures.
 [[nodiscard]] cv::Mat1d difference_of(const cv::Mat1d& from, const cv::Mat1d& to, FrameGain gain);
 
-/// Differences of pictures at three lags: 1, 3/8 and 3/4 of the planned number of frames, without offsets of whole
-/// frames. Stores a quarter of the frames. One thread at a time.
+/// Differences of pictures at three lags: one frame, 3/8 and 3/4 of the planned number of frames. Offsets of whole
+/// frames are removed. Stores a quarter of the frames. One thread at a time.
 class LagDifferences {
  public:
   /// `frames`: planned number, at least 2.
@@ -30,12 +31,12 @@ class LagDifferences {
   /// Adds a picture. `sequence`: number of the exposure, increasing.
   void add(std::uint64_t sequence, const cv::Mat1d& picture);
 
-  /// Returns half of the mean squared difference of successive frames; 0 if there are none.
+  /// Returns half of the mean squared difference of successive frames; 0 without successive frames.
   [[nodiscard]] double successive_variance() const { return successive_.mean(); }
   /// Returns the variance of a pixel in one frame. It is exact for white noise, for noise of first order, and for
   /// moving means over at most 3/8 of the frames. With too few frames it is the successive variance.
   [[nodiscard]] double variance() const;
-  /// Returns variance() / successive_variance(): above 1 for noise with memory; 1 without noise.
+  /// Returns variance() / successive_variance(). The ratio is above 1 for noise with memory, and 1 without noise.
   [[nodiscard]] double memory() const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The measurement: produces trials from a frame source, a target and an observer. Laboratory and simulator differ only
-// in these objects.
+// The measurement. It obtains trials from a frame source, a target and an observer. A measurement in the laboratory and
+// a simulation differ only in these objects.
 #pragma once
 
 #include <chrono>
@@ -30,7 +30,7 @@
 
 namespace todbench {
 
-/// Picture in which the contrast of a set-up will be measured next. Valid only during the call.
+/// Picture in which the contrast of a set-up is measured next. Valid only during the call.
 struct SetUpPicture {
   const AveragedPicture& picture;
   int frames = 1;  ///< number of frames averaged
@@ -41,73 +41,79 @@ struct SetUpPicture {
 
 /// Options of measure().
 struct MeasurementOptions {
-  double ifov_mrad = 0;             ///< IFOV of one pixel, from the plan
+  double ifov_mrad = 0;             ///< IFOV of one pixel, as the plan states
   double distance_m = 0;            ///< entrance pupil to plate
   std::vector<TargetPlate> plates;  ///< plates in identity mounting
-  int registration_frames = 32;     ///< number averaged at the highest contrast
-  int contrast_frames = 16;     ///< number averaged for the effective contrast, once per plate, mounting and contrast
-  double min_reference_px = 4;  ///< smallest triangles that measure the effective contrast
+  int registration_frames = 32;     ///< number of frames averaged at the highest contrast to locate the plate
+  /// Number averaged to measure the effective contrast, once for each plate, mounting and contrast.
+  int contrast_frames = 16;
+  double min_reference_px = 4;  ///< size of the smallest triangles that are used to measure the effective contrast
   ContrastUnit contrast_unit = ContrastUnit::kelvin;  ///< grey_levels: the camera's temperature scale is not used
-  int samples_per_pitch = 1;  ///< displayed samples per detector pitch (2: 2x2 microscan); the IFOV is that of a sample
-  int judged_samples_per_pixel = 1;  ///< value of JudgedPicture in every frame; the IFOV remains that of a pixel
-  /// Response of effective_contrast() to a contrast of 1 K, by plate name, from a simulated picture. It includes the
-  /// blur; 1 if unknown. Measured contrasts are divided by it.
+  /// Displayed samples per detector pitch (2: 2x2 microscan); ifov_mrad is then the IFOV of a sample.
+  int samples_per_pitch = 1;
+  /// JudgedPicture::samples_per_pixel in every frame; ifov_mrad is always the IFOV of a pixel.
+  int judged_samples_per_pixel = 1;
+  /// Response of effective_contrast() to a contrast of 1 K, by plate name, from a simulated picture that includes the
+  /// blur. 1 if unknown. Measured contrasts are divided by the response.
   std::map<std::string, double> contrast_response;
-  /// Called for every SetUpPicture if contrasts are in kelvin. The returned values replace contrast_response from this
-  /// picture on. May be empty. Called from the measuring thread.
+  /// Called for every SetUpPicture if contrasts are in kelvin. The returned values replace contrast_response for this
+  /// and all later pictures. May be empty. Called from the measuring thread.
   std::function<std::map<std::string, double>(const SetUpPicture&)> learn_response{};
   /// Transmittance of the air between target and camera for a contrast. It is recorded with every presentation; empty:
   /// not stated.
   std::optional<double> air_transmittance{};
-  static constexpr int graded_draws = 32;   ///< draws of the observer's internal noise for the probabilities of one
-                                            ///< frame
-  AnswerKind answers = AnswerKind::binary;  ///< graded: also Trial::probability_correct
+  /// Number of draws of the observer's internal noise for the probabilities of one frame.
+  static constexpr int graded_draws = 32;
+  AnswerKind answers = AnswerKind::binary;  ///< graded: Trial::probability_correct is also recorded
   int frames_per_presentation = 1;  ///< accepted successive frames over which graded answers are averaged; at least 1
-  std::map<double, int> frames_at_contrast;  ///< by set contrast; replaces frames_per_presentation
-  int frames_after_change = 2;  ///< exposures discarded after a motion of the target, because they were in transfer
-  double nuc_interval_s = 0;    ///< interval of commanded non-uniformity corrections; 0: none
-  double nuc_wait_s = 1;        ///< frames within this time after a correction are not measured
+  std::map<double, int> frames_at_contrast;  ///< for each set contrast in the map, replaces frames_per_presentation
+  /// Number of exposures discarded after a motion of the target, because they may show the target before the motion.
+  int frames_after_change = 2;
+  double nuc_interval_s = 0;  ///< interval of commanded non-uniformity corrections; 0: none
+  double nuc_wait_s = 1;      ///< frames within this time after a correction are not measured
   /// Deviation of the target's reported contrast from the set-point above which a note is added; 0: not checked.
   double max_readback_deviation_k = 0;
-  /// Largest relative deviation of the observed contrast, by set contrast. If the deviation exceeds it by four standard
-  /// errors, the run ends with `calibration`. Other contrasts, and contrasts in grey levels, are not checked.
+  /// Largest permitted relative deviation of the observed contrast, by set contrast. If the deviation is larger by more
+  /// than four standard errors, the run ends with `calibration`. Other contrasts, and contrasts in grey levels, are not
+  /// checked.
   std::map<double, double> max_contrast_error{};
-  /// Largest distance of the plate from the requested place, if the target sets places. If it is exceeded, the run ends
-  /// with `calibration`. 0: not checked.
+  /// Largest permitted distance of the plate from the requested position, for a target that sets positions. If the
+  /// distance is larger, the run ends with `calibration`. 0: not checked.
   double max_shift_error_px = 0;
   double max_rejected_share = 0.05;  ///< a larger share, after 100 frames, ends the run with `integrity`
   std::chrono::milliseconds frame_timeout{2000};
   IntegrityOptions integrity;
   RegistrationOptions registration;  ///< the expected scale is computed from distance and IFOV
   std::uint64_t seed = 1;
-  bool free_running = true;  ///< the camera exposes without requests: its frames are also taken during pauses
+  bool free_running = true;  ///< The camera exposes without requests, so its frames are also taken during pauses.
 };
 
-/// A loss of the camera after which the run continued. A new segment begins after it.
+/// A loss of the camera after which the run continued with a new segment.
 struct Interruption {
   std::int64_t presentation = 0;  ///< first presentation of the new segment
-  double away_s = 0;              ///< from the error to the answers of that presentation
-  double moved_px = 0;            ///< distance between the plate's places before the loss and after it
+  double away_s = 0;              ///< time from the error to the answers of `presentation`
+  double moved_px = 0;            ///< distance between the positions of the plate before and after the loss
   std::string reason;
   bool operator==(const Interruption&) const = default;
 };
 
 struct SetUpRecord;
 
-/// Events of a run. They are called from the measuring thread. on_rejected is also called from the thread that takes
-/// frames while the measuring thread waits for the target, but never from both at once. Every function may be empty,
-/// and none affects decisions. A slow listener slows the measurement but loses no trials.
+/// Events of a run. The functions are called from the measuring thread. on_rejected is also called from the thread that
+/// takes frames while the measuring thread waits for the target, but never from both threads at once. Every function
+/// may be empty. No function affects the results. A slow function delays the measurement, but no trials are lost.
 struct MeasurementListener {
   std::function<void(const Trial&)> on_trial{};
-  /// Called after on_trial with the observer's patch of the first frame; valid only during the call.
+  /// Called after on_trial with the observer's patch of the first frame. The patch is valid only during the call.
   std::function<void(const Trial&, const Patch&)> on_patch{};
-  /// Called when the target is in place, before the trials of the presentation, and also if no trial was possible.
+  /// Called for each presentation when the target is in place, before the trials of the presentation. Also called if no
+  /// trial is possible.
   std::function<void(const Presentation&)> on_presentation{};
   std::function<void(const SetUpRecord&)> on_set_up{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
   std::function<void(const std::string& sentence)> on_note{};
-  std::function<void(const RejectedFrame&)> on_rejected{};  ///< called for every frame that was not used, with the
-                                                            ///< reason
+  /// Called for every frame that is not used, with the reason.
+  std::function<void(const RejectedFrame&)> on_rejected{};
   /// Called when the camera is lost, before the host tries to recover it.
   std::function<void(const Error& why)> on_lost{};
 };
@@ -124,29 +130,30 @@ struct MeasurementResult {
   std::vector<Trial> trials;
   std::vector<Presentation> presentations;
   std::vector<SetUpRecord> set_ups;
-  std::vector<ContrastMeasurement> contrasts;    ///< in kelvin, one for each set-up and contrast
+  std::vector<ContrastMeasurement> contrasts;    ///< measured contrasts in kelvin, one for each set-up and contrast
   std::vector<JudgedContrast> judged_contrasts;  ///< filled if there are stages after the camera
   std::uint64_t frames_used = 0;
-  std::map<std::string, std::uint64_t> frames_rejected;  ///< by reason
-  std::uint64_t frames_lost = 0;                         ///< gaps in the sequence
-  /// Temporal noise per pixel, from differences of successive frames of one presentation; 0: not measured.
+  std::map<std::string, std::uint64_t> frames_rejected;  ///< number of rejected frames by reason
+  std::uint64_t frames_lost = 0;                         ///< number of frames missing in the sequence numbers
+  /// Temporal noise of a pixel in one frame, from differences of successive frames of one presentation. 0: not
+  /// measured.
   double temporal_noise_k = 0;
   std::optional<double> temporal_noise_counts;  ///< temporal noise in steps of the counts, near the surround
   std::optional<double> lag1_correlation;       ///< correlation of a pixel's noise in the same frames
   std::vector<std::string> notes;
   std::vector<Interruption> interruptions;
   std::vector<GreyFrame> grey_frames;  ///< judged frames, if contrasts are in grey levels
-  std::optional<Error> ended_by;       ///< reason of an early end; the trials so far are valid
-  RunConstancy constancy{};            ///< from the averages; no residue for contrasts in grey levels
+  std::optional<Error> ended_by;       ///< reason for an early end; the trials before it are valid
+  RunConstancy constancy{};            ///< data from the averages; without a residue if contrasts are in grey levels
 };
 
 /// Returns the random stream of the observer's answer to a triangle of a presentation. `triangle`: index in the order
 /// of the plate.
 [[nodiscard]] RandomStream answer_noise(std::uint64_t seed, std::int64_t presentation, std::size_t triangle);
 
-/// Runs a schedule. Fails only if no measurement was possible (plate not found, uncalibrated camera, sizes that do not
-/// fit). A run that ended early returns its trials with `ended_by`. `host` and `listener` are used only during the
-/// call.
+/// Runs a schedule. Returns an error only if no measurement is possible (plate not found, camera without temperature
+/// scale, sizes that do not fit). A run that ends early returns its trials and `ended_by`. `host` and `listener` are
+/// used only during the call.
 [[nodiscard]] Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer,
                                                 TrialSchedule& schedule, const MeasurementOptions& options,
                                                 RunController& host, const MeasurementListener& listener,

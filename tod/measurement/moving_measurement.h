@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measurement of a plate that a stage moves: passes of several frames, in which each triangle is judged at its place.
+// Measurement of a plate that a stage moves. A pass consists of several frames, in which each triangle is judged at its
+// position.
 #pragma once
 
 #include <array>
@@ -24,11 +25,14 @@ struct MovingMeasurementOptions {
   /// For each plate of `measurement`, the number of `mountings` in which it is shown, counted from the first one;
   /// empty: all.
   std::vector<std::size_t> mountings_per_plate{};
-  std::vector<double> delta_t_k;      ///< not 0; the plate is located at the largest
+  /// Contrasts, not 0. The plate is located at the contrast with the largest magnitude.
+  std::vector<double> delta_t_k;
   std::vector<double> speeds_mrad_s;  ///< 0 or more
-  int passes = 4;  ///< passes of each plate, mounting, contrast and speed, alternately to the right and left
-  int frames = 8;  ///< successive frames of a pass that are judged
-  /// Frames of motion before the first judged frame; after them the detector no longer shows the plate at rest.
+  /// Number of passes of each plate, mounting, contrast and speed, alternately to the right and to the left.
+  int passes = 4;
+  int frames = 8;  ///< number of successive frames of a pass that are judged
+  /// Number of frames of motion before the first judged frame. They must be enough for the detector to show no residue
+  /// of the plate at rest.
   int lead_frames = 5;
   PlaceSource places = PlaceSource::triangles;
 };
@@ -44,12 +48,12 @@ struct MovingPassRecord {
   double speed_mrad_s = 0;   ///< requested
   double along_x = 1;        ///< +1: to the right
   double said_px_s = 0;      ///< speed reported by the stage, converted by the registration
-  double measured_px_s = 0;  ///< slope of the places of the large triangles as a function of device time
-  double residual_px = 0;    ///< rms deviation of those places from the line at the stage's speed, per axis
-  /// Delay of the plate in the picture, from the centre of mass of the large triangles; empty: at rest, no trigger, or
-  /// not the largest contrast.
+  double measured_px_s = 0;  ///< speed from the positions of the large triangles as a function of device time
+  double residual_px = 0;    ///< rms deviation of these positions from a line with the speed of the stage, per axis
+  /// Delay of the plate in the picture, from the centre of mass of the large triangles. Empty: the plate is at rest,
+  /// there is no trigger, or the contrast is not the largest.
   std::optional<double> lag_s;
-  int left_out = 0;     ///< triangles whose window leaves the picture
+  int left_out = 0;     ///< number of triangles whose window is partly outside the picture
   std::string dropped;  ///< reason why the pass has no answers; empty: it has answers
 };
 
@@ -57,24 +61,25 @@ struct MovingPassRecord {
 struct MovingAnswer {
   SequenceObserver observer = SequenceObserver::single_frame;
   double speed_mrad_s = 0;
-  Trial trial;  ///< presentation: MovingPassRecord::pair, one pass at each speed
+  Trial trial;  ///< Trial::presentation is MovingPassRecord::pair, with one pass at each speed
 };
 
 /// Result of measure_moving().
 struct MovingMeasurement {
   std::vector<MovingPassRecord> passes;
   std::vector<MovingAnswer> answers;
-  /// For an observer with an eye: answers to the same frames at the best and the worst end of its open parameters.
+  /// For an observer with an eye: answers to the same frames by the best and by the worst observer of the range of its
+  /// open parameters.
   std::array<std::vector<MovingAnswer>, 2> answers_at_ends;
   std::vector<SetUpRecord> set_ups;
   double frame_rate_hz = 0;
-  double temporal_noise_k = 0;  ///< per pixel and frame
+  double temporal_noise_k = 0;  ///< temporal noise of a pixel in one frame
   std::map<std::string, std::uint64_t> frames_rejected;
   std::uint64_t frames_lost = 0, frames_used = 0;
-  std::optional<Error> ended_by;            ///< reason for an early end; passes and answers so far are valid
-  std::vector<std::string> notes;           ///< includes the notes of a plate at rest: target, contrasts, saturation
+  std::optional<Error> ended_by;   ///< reason for an early end; the passes and answers before it are valid
+  std::vector<std::string> notes;  ///< also contains the notes about the plate at rest: target, contrasts, saturation
   std::vector<Presentation> presentations;  ///< presentations of the contrasts at rest, in the order of the run
-  RunConstancy constancy{};                 ///< from the averages of a plate at rest
+  RunConstancy constancy{};                 ///< data from the averages of the plate at rest
 };
 
 /// Events of a run, on the measuring thread. Every function may be empty. If a function returns an error, the run ends
@@ -93,10 +98,10 @@ struct MovingListener {
                                         const MovingMeasurementOptions& options);
 
 /// Measures a moving plate. Set-ups are prepared and checked as in measure(). A pass with lost frames or without a
-/// located plate is dropped, and its record states the reason. If at least four passes and at least a third of them are
-/// dropped, the run ends with `integrity`. A run that ended early after its first answers returns them with `ended_by`.
-/// Errors: `invalid_input` (a target that cannot move, speeds above 5 pixels a frame, a run longer than the travel of
-/// the stage, displayed samples finer than the detectors), those of measure().
+/// located plate is dropped, and its record states the reason. The run ends with `integrity` if at least four passes,
+/// and at least a third of the passes made until then, are dropped. A run that ends early after its first answers
+/// returns these answers and `ended_by`. Errors: `invalid_input` (a target that cannot move, speeds above 5 pixels a
+/// frame, a run longer than the travel of the stage, displayed samples finer than the detectors), those of measure().
 [[nodiscard]] Result<MovingMeasurement> measure_moving(FrameSource& source, Target& target, TemplateObserver& observer,
                                                        const MovingMeasurementOptions& options, RunController& host,
                                                        const MovingListener& listener, std::stop_token stop);

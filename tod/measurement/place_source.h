@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Source of the place of a moving plate in a frame.
+// Source of the position of a moving plate in a frame.
 #pragma once
 
 #include <array>
@@ -7,10 +7,12 @@
 
 namespace todbench {
 
-/// Source of the place of the plate in a frame of a pass.
+/// Source of the position of the plate in a frame of a pass.
 enum class PlaceSource {
-  triangles,  ///< place of the large triangles of that frame
-  stage,      ///< a straight line in device time at the stage's speed, through the mean place of the large triangles
+  triangles,  ///< position of the large triangles in this frame
+  /// Straight line as a function of device time, with the speed of the stage, through the mean position of the large
+  /// triangles.
+  stage,
 };
 inline constexpr std::array all_place_sources{PlaceSource::triangles, PlaceSource::stage};
 [[nodiscard]] constexpr std::string_view to_string(PlaceSource source) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compares the plate's place in the frames of each presentation with the requested place.
+// Compares the position of the plate in the frames of each presentation with the requested position.
 #pragma once
 
 #include <cstdint>
@@ -25,51 +25,56 @@ struct PlaceWatchOptions {
   RegistrationOptions registration;
 };
 
-/// Properties of the picture that are known before its place is measured, in the unit of window_kelvin().
+/// Properties of the picture that are known before the position of the plate is measured, in the unit of
+/// window_kelvin().
 struct ExpectedPicture {
   double contrast = 0;  ///< triangle minus surround
   double noise = 0;     ///< noise of a pixel in one frame; 0: not known
 };
 
-/// Place of the plate's middle in one presentation, in pixels.
+/// Position of the middle of the plate in one presentation, in pixels.
 struct PlateSeen {
-  cv::Point2d asked_px;                ///< requested place
-  std::optional<cv::Point2d> seen_px;  ///< observed place in the frames; empty: too little contrast
-  cv::Point2d standard_error_px;       ///< of seen_px
-  cv::Point2d used_off_px{0, 0};       ///< place at which frames are judged minus the requested place
+  /// Requested position.
+  cv::Point2d asked_px;
+  std::optional<cv::Point2d> seen_px;  ///< observed position in the frames; empty: too little contrast
+  cv::Point2d standard_error_px;       ///< standard error of seen_px
+  cv::Point2d used_off_px{0, 0};       ///< position at which frames are judged minus the requested position
   double amplitude = 0;                ///< common contrast of the large triangles, in the unit of window_kelvin()
-  double amplitude_error = 0;          ///< its standard error; 0: not measured
-  double shared = 1;  ///< share of this error's variance that recurs in the next presentation, due to fixed pattern
+  /// Standard error of the amplitude. 0: not measured.
+  double amplitude_error = 0;
+  /// Share of the variance of amplitude_error that recurs in the next presentation, due to fixed pattern.
+  double shared = 1;
 };
 
-/// Measures the place in each presentation. Within a set-up, places are averaged over as many of the last presentations
-/// (1, 2, 4, ...) as a standard error of 0.03 px requires. Once the place has this standard error, or the smallest that
-/// the set-up permits, it may replace the requested place: the difference must exceed 0.05 px and six standard errors.
-/// Otherwise the requested place is kept bit for bit. A plate in its correct place exceeds six standard errors on two
-/// axes once in 7e7 measurements. One thread at a time.
+/// Measures the position of the plate in each presentation. Within a set-up, positions are averaged over the last 1, 2,
+/// 4, ... presentations until the standard error is 0.03 px. The mean replaces the requested position if it has this
+/// standard error, or the smallest standard error possible in the set-up, and if it differs from the requested position
+/// by more than 0.05 px and more than six standard errors. Otherwise the requested position is used without any change.
+/// For a plate at its correct position, six standard errors on two axes are exceeded once in 7e7 measurements. One
+/// thread at a time.
 class PlaceWatch {
  public:
   explicit PlaceWatch(PlaceWatchOptions options) : options_(options) {}
 
-  /// Returns whether places are checked.
+  /// Returns whether positions are checked.
   [[nodiscard]] bool looks() const { return options_.max_shift_error_px > 0; }
   /// Announces that the plate was located again.
   void set_up_located();
-  /// Measures the place in one presentation. `base`: registration of the set-up at shift 0; `asked`: registration at
+  /// Measures the position in one presentation. `base`: registration of the set-up at shift 0; `asked`: registration at
   /// the shift of this presentation; `frames`: frames of the presentation, at least one. Error: `calibration` with the
   /// likely cause.
   [[nodiscard]] Result<PlateSeen> look(std::span<const Frame> frames, const TargetPlate& mounted_plate,
                                        const Registration& base, const Registration& asked,
                                        const ExpectedPicture& expected, std::int64_t presentation);
-  /// Returns the place at which the next frames are judged minus the requested place.
+  /// Returns the position at which the next frames are judged minus the requested position.
   [[nodiscard]] cv::Point2d off_px() const { return used_off_px_; }
-  /// Returns an error that was detected but not yet returned; call at the end of the run.
+  /// Returns an error that was detected but not yet returned. Call this function at the end of the run.
   [[nodiscard]] Result<void> finish() const;
   /// Returns notes for the end of the run.
   [[nodiscard]] std::vector<std::string> notes() const;
 
  private:
-  /// A measured place, with the data for the error of a mean over presentations.
+  /// A measured position, with the data for the error of a mean over presentations.
   struct Look {
     ShiftSeen place;
     double shared = 1;  ///< share of the variance that recurs in the next presentation, due to fixed pattern
@@ -85,13 +90,13 @@ class PlaceWatch {
   [[nodiscard]] std::vector<ShiftSeen> told() const;
 
   PlaceWatchOptions options_;
-  std::vector<Look> looks_;  ///< places in the current set-up
+  std::vector<Look> looks_;  ///< measured positions in the current set-up
   std::vector<ShiftSeen> earlier_;
   int set_up_ = 0;
   cv::Point2d used_off_px_{0, 0};
   cv::Point2d farthest_px_{0, 0};  ///< largest deviation that was applied
   std::int64_t farthest_presentation_ = 0;
-  std::optional<std::size_t> wrong_since_;  ///< number of looks when the deviation was detected
+  std::optional<std::size_t> wrong_since_;  ///< value of looks_.size() when the deviation was detected
   double wrong_by_px_ = 0, wrong_error_px_ = 0;
   double largest_turn_px_ = 0;
   std::int64_t not_seen_ = 0, seen_ = 0;

@@ -12,10 +12,11 @@ namespace todbench {
 
 /// A plate with its observers.
 struct PreparedPlate {
-  TargetPlate plate;                                               ///< in identity mounting
-  std::vector<std::shared_ptr<const PreparedObserver>> observers;  ///< per triangle; empty until the scale is known
-  std::vector<double> size_px;                                     ///< per triangle
-  /// Returns the sides of the windows of its triangles, in samples.
+  TargetPlate plate;  ///< plate in identity mounting
+  /// Observer of each triangle; empty until the scale is known.
+  std::vector<std::shared_ptr<const PreparedObserver>> observers;
+  std::vector<double> size_px;  ///< size of each triangle
+  /// Returns the side of the observer's window of each triangle, in samples.
   [[nodiscard]] std::vector<int> sides() const;
 };
 

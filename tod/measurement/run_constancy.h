@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests whether the camera remained constant during a run, and whether a picture shows the present target. The figures
-// and their limits come from the averages in which the contrasts are measured. Pure functions of the run's records.
+// Tests whether the camera remained constant during a run, and whether each picture shows the present target. The tests
+// use the averages in which the contrasts are measured. All functions are pure functions of the run's records.
 #pragma once
 
 #include <optional>
@@ -11,111 +11,135 @@
 
 namespace todbench {
 
-/// Noise of a pixel in the average of one set-up and contrast.
+/// Noise in the frames that are averaged to measure the contrast of one set-up.
 struct PictureNoise {
+  /// Set contrast.
   double set_delta_t_k = 0;
-  double noise_k = 0;                        ///< from differences of successive frames; above 0
-  std::optional<double> lag1_correlation{};  ///< empty: too few frames
-  int frames = 16;                           ///< number in the average, at least 2
-  int lines = 120;                           ///< smaller number of rows and columns
-  /// Number of large triangles (at least 2) and standard deviation of one of them, relative to their mean. For
-  /// contrasts in grey levels, where noise_k is (noise / contrast) times the contrast of the target. 0: kelvin.
+  /// Noise of a pixel in one frame, from differences of successive frames. Above 0.
+  double noise_k = 0;
+  /// Lag-1 correlation of the noise. Empty: too few frames.
+  std::optional<double> lag1_correlation{};
+  /// Number of averaged frames, at least 2.
+  int frames = 16;
+  /// Number of rows or of columns of the picture, whichever is smaller.
+  int lines = 120;
+  /// Number of large triangles, at least 2, for a contrast in grey levels. noise_k is then (noise / contrast) times the
+  /// contrast of the target. 0: the contrast is in kelvin.
   int triangles = 0;
+  /// Standard deviation of the contrasts of these triangles, divided by their mean. Used only for a contrast in grey
+  /// levels.
   double triangle_scatter = 0;
 };
 
 /// Residue of the previous picture in the first frame of an average.
 struct PictureResidue {
-  double share = 0;            ///< share of the difference between the previous picture and this one; 0: no residue
-  double limit = 0;            ///< above this limit the picture was still changing
-  bool behind_stages = false;  ///< in the judged pictures, and not in the camera's frames
+  /// Share of the difference between the previous picture and this picture that remains in the first frame. 0: no
+  /// residue.
+  double share = 0;
+  /// Largest share at which the picture is regarded as constant.
+  double limit = 0;
+  /// True: the residue is in the pictures after the stages. False: it is in the frames of the camera.
+  bool behind_stages = false;
 };
 
-/// Contrast of the large triangles in the presentations of one set-up and contrast, and in the average in which the
-/// contrast was measured before them. Amplitudes of one fit (fit_place()), so that a blur that is not exact changes
-/// both alike.
+/// Contrast of the large triangles of one set-up at one set contrast: in its presentations, and in the average before
+/// them, in which the contrast was measured. Both are amplitudes of the same fit (fit_place()), so an inexact blur
+/// changes both equally.
 struct PresentedContrast {
+  /// Set contrast.
   double set_delta_t_k = 0;
-  double measured = 0, measured_error = 0;  ///< in the average, with its standard error
-  double sum = 0, errors = 0, shared = 0;  ///< sums over the presentations: amplitudes, their errors, PlateSeen::shared
+  /// Amplitude in the average, and its standard error.
+  double measured = 0, measured_error = 0;
+  /// Sums over the presentations: of the amplitudes, of their standard errors, and of PlateSeen::shared.
+  double sum = 0, errors = 0, shared = 0;
+  /// Number of presentations in the sums.
   int presentations = 0;
 };
 
 /// Further results of the averages of a run.
 struct RunConstancy {
-  std::vector<PictureNoise> noise;          ///< in the order of the run
-  std::optional<PictureResidue> residue{};  ///< residue with the largest share relative to its limit; empty: no picture
-                                            ///< differed enough
-  std::vector<PresentedContrast> presented{};  ///< settled contrasts in kelvin, in the order of the run
+  /// One element for each average, in the order of the run.
+  std::vector<PictureNoise> noise;
+  /// Residue with the largest ratio of share to limit. Empty: no two successive pictures differed enough.
+  std::optional<PictureResidue> residue{};
+  /// Settled contrasts in kelvin, in the order of the run.
+  std::vector<PresentedContrast> presented{};
 };
 
-/// A figure and the limit beyond which it is a finding.
+/// A figure with its limit. A magnitude above the limit is a finding.
 struct ConstancyFigure {
+  /// Observed value, signed.
   double value = 0;
+  /// Largest magnitude of the value that is not a finding.
   double limit = 0;
+  /// Returns whether the magnitude of the value is above the limit.
   [[nodiscard]] bool beyond() const { return value > limit || value < -limit; }
 };
 
-/// Standard uncertainty of the ratio of the observed contrasts of two groups of set-ups. If the simulated camera is not
-/// as sharp as the real one, the estimator's response differs by up to 2 % between plates of different sizes.
+/// Standard uncertainty of the ratio of the observed contrasts of two groups of set-ups. If the simulated camera is
+/// less sharp than the real camera, the response of the contrast estimator differs by up to 2 % between plates with
+/// different triangle sizes.
 inline constexpr double transfer_systematic_u = 0.01;
 /// Probability of a false alarm of transfer_change() in a whole run.
 inline constexpr double transfer_false_alarm = 0.005;
 
-/// Returns the relative change of the signal transfer between the first set-ups and the later ones. The run is divided
-/// where this change is largest in units of its error. A set-up with several contrasts contributes the difference of
-/// its extreme contrasts, triangle by triangle; fixed pattern, row and column noise cancel. For a set-up with one
-/// contrast, the error includes a pattern common to its triangles, as large as the scatter of one triangle. A set-up is
-/// excluded if its contrasts span less than half of the widest span. The error contains the pooled scatter of the
-/// triangles within the set-ups (Student's t) and transfer_systematic_u. The possible divisions share the probability
-/// of a false alarm. Empty with fewer than two set-ups, or if no set-up has two triangles.
+/// Returns the relative change of the signal transfer between the first set-ups and the later set-ups. Every division
+/// of the run into first and later set-ups is tested. The change with the largest ratio to its limit is returned. A
+/// set-up with several contrasts contributes the difference of its lowest and highest contrast for each triangle. In
+/// this difference, fixed pattern, row noise and column noise cancel. For a set-up with one contrast, the error
+/// includes a pattern common to its triangles, as large as the scatter of one triangle. A set-up is excluded if its
+/// contrasts span less than half of the widest span. The error contains the pooled scatter of the triangles within the
+/// set-ups (Student's t) and transfer_systematic_u. The probability of a false alarm is shared among the divisions.
+/// Empty with fewer than two set-ups, or if no set-up has two triangles.
 [[nodiscard]] std::optional<ConstancyFigure> transfer_change(std::span<const ContrastMeasurement> measurements);
 
-/// Returns the change of the noise: ln (noise of a later average / noise of the first average at the same contrast). Of
-/// all contrasts and later averages it is the change that is largest relative to its limit. The limit is
+/// Returns the change of the noise: ln (noise of a later average / noise of the first average at the same contrast).
+/// The change with the largest ratio to its limit is returned, over all contrasts and later averages. The limit is
 /// constancy_errors standard errors, at least most_noise_change. With N frames, the mean square of the N - 1 successive
-/// differences has the relative variance (3 N - 4) / (N - 1)^2 / n for white noise, less for noise with memory. n is
-/// the number of independent samples of a frame: 1/n = 1/(4 L) + 1/(4 L^2) if whole lines cause half of the variance; L
-/// is the smaller of rows and columns.
-/// For contrasts in grey levels the noise is relative to the contrast, so a change of the gain does not change it. A
-/// further term is then added to the limit in quadrature: the error of the quotient of both contrasts, times Student's
-/// t for a false-alarm probability of transfer_false_alarm, which the averages share. As in transfer_change(), this
-/// error contains transfer_systematic_u and the scatter of a triangle, pooled over the averages of the contrast. The
-/// scatter enters for the mean of each average and for a pattern that its triangles share.
+/// differences has the relative variance (3 N - 4) / (N - 1)^2 / n for white noise. For noise with memory the variance
+/// is smaller. n is the number of independent samples of a frame. If whole lines cause half of the variance, 1/n = 1/(4
+/// L) + 1/(4 L^2), where L is the number of rows or of columns, whichever is smaller. For contrasts in grey levels the
+/// noise is relative to the contrast, so a change of the gain does not change it. The limit then contains a further
+/// term, added in quadrature: the error of the quotient of the two contrasts, times Student's t. The false-alarm
+/// probability of this t is transfer_false_alarm, shared among the averages. As in transfer_change(), the error
+/// contains transfer_systematic_u and the scatter of a triangle, pooled over the averages of the contrast. The scatter
+/// is counted twice: for the mean over the triangles of each average, and for a pattern common to these triangles.
 [[nodiscard]] std::optional<ConstancyFigure> noise_change(std::span<const PictureNoise> noise);
 inline constexpr double most_noise_change = 0.1397619;  ///< ln 1.15; five errors of 16 frames of 120 lines: 7 %
 inline constexpr double constancy_errors = 5;
 
-/// Returns the relative difference between the contrast in the presentations and the measured contrast, of the set-up
-/// and contrast where it is largest relative to its limit. The limit is constancy_errors standard errors and
-/// most_presented_change in quadrature. The standard error has the errors of both amplitudes; fixed pattern recurs in
-/// all presentations. Empty if no contrast was presented.
+/// Returns the relative difference between the contrast in the presentations and the measured contrast. The difference
+/// with the largest ratio to its limit is returned, over all elements of `presented`. The limit is constancy_errors
+/// standard errors and most_presented_change, added in quadrature. The standard error combines the errors of both
+/// amplitudes. It takes into account that fixed pattern recurs in all presentations. Empty if no contrast was
+/// presented.
 [[nodiscard]] std::optional<ConstancyFigure> presented_change(std::span<const PresentedContrast> presented);
-/// The amplitude of triangles of four pixels depends on their phases.
+/// Relative difference that is allowed in addition to the standard errors. The reason is that the amplitude of
+/// triangles of four pixels depends on their phases.
 inline constexpr double most_presented_change = 0.04;
 
-/// Returns the difference of the lag-1 correlation between the first and a later average at the same contrast. Of all
-/// contrasts and later averages it is the difference that is largest relative to its limit. The limit is
-/// constancy_errors standard errors, at least most_correlation_change.
-/// The correlation follows from the ratio of the mean squares at the lags l = min(8, N / 4) and 1, whose relative
-/// variance is v(1) + v(l) - 2 c: v(l) = (2 m + max(0, m - l)) / m^2 / n with m = N - l, c = (2 m - 1) / (m (N - 1)) /
-/// n.
+/// Returns the lag-1 correlation of a later average minus that of the first average at the same contrast. The
+/// difference with the largest ratio to its limit is returned, over all contrasts and later averages. The limit is
+/// constancy_errors standard errors, at least most_correlation_change. The correlation is computed from the ratio of
+/// the mean squares at the lags 1 and l = min(8, N / 4). The relative variance of this ratio is v(1) + v(l) - 2 c,
+/// where v(l) = (2 m + max(0, m - l)) / m^2 / n, m = N - l and c = (2 m - 1) / (m (N - 1)) / n.
 [[nodiscard]] std::optional<ConstancyFigure> correlation_change(std::span<const PictureNoise> noise);
 inline constexpr double most_correlation_change = 0.2;  ///< five errors of 16 frames of 120 lines: 0.13
 
-/// Returns the share of `before - mean` in `first - last`, by least squares over the pixels that changed by more than
-/// four times the noise. `first`, `last`, `mean`: first frame, last frame and mean of an average; `before`: the
-/// previous average. If a picture lags, its first frame contains a part of the old picture that its last frame does
-/// not. The limit is five standard errors due to the noise of a pixel, at least least_residue_share. Empty if the
-/// standard error of the share is 0.05 or larger.
+/// Returns the residue of the previous picture in an average. `first`, `last`, `mean`: first frame, last frame and mean
+/// of the average; `before`: mean of the previous average. If the picture lags, the first frame contains a part of the
+/// previous picture and the last frame does not. The share of `before - mean` in `first - last` is fitted by least
+/// squares to the pixels that changed by more than four times the noise. The limit is five standard errors due to the
+/// noise of a pixel, at least least_residue_share. Empty if the standard error of the share is 0.05 or larger.
 [[nodiscard]] std::optional<PictureResidue> picture_residue(const cv::Mat1d& before, const cv::Mat1d& first,
                                                             const cv::Mat1d& last, const cv::Mat1d& mean,
                                                             double noise_k);
-/// Returns the same for the judged pictures of an average, which stages may scale from picture to picture. `before`:
-/// mean of the previous average; `mean`: mean of these pictures. The share is that of the first picture minus the mean
-/// of the second half. Five standard deviations of the shares of the second half are part of the limit. The noise is
-/// the median over the pixels. Empty as above, for fewer than eight pictures, and if `before` is empty or has another
-/// size.
+/// Returns the residue in the judged pictures of an average. Stages may scale each picture differently. `before`: mean
+/// of the judged pictures of the previous average; `mean`: mean of `pictures`. The share of the previous picture is
+/// computed for each picture. The residue is the share in the first picture minus the mean share in the second half of
+/// the pictures. The limit includes five standard deviations of the shares in the second half. The noise is the median
+/// over the pixels. Empty as for picture_residue(), for fewer than eight pictures, and if `before` is empty or has
+/// another size.
 [[nodiscard]] std::optional<PictureResidue> judged_residue(const cv::Mat1d& before, std::span<const cv::Mat1w> pictures,
                                                            const cv::Mat1d& mean);
 /// Smallest limit of a residue. It exceeds the residue that rounding, or a fixed pattern that drifts between

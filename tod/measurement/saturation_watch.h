@@ -10,20 +10,22 @@
 
 namespace todbench {
 
-/// Learns the ends of a camera's range of counts, and the defective pixels that are always at an end. One thread at a
-/// time.
+/// Determines the lowest and the highest count of a camera, and the defective pixels that always have one of these two
+/// counts. One thread at a time.
 class SaturationWatch {
  public:
-  /// Learns from the average of a set-up with the observed contrast `contrast_k`. Returns the number of triangle pixels
-  /// that were at an end in at least one frame, without the defective pixels.
+  /// Updates the two counts and the defective pixels from the average of a set-up with the observed contrast
+  /// `contrast_k`. Returns the number of triangle pixels that had the lowest or the highest count in at least one
+  /// frame, without defective pixels.
   ///
-  /// The ends are 0 and full scale of the significant bits. A count is also an end if several pixels stayed at it in
-  /// every frame, while noise changed the others and no pixel exceeded it; this is the end of a temperature range, or
-  /// of fewer bits than the format has. A pixel that was at an end in every frame is defective if it is outside the
-  /// triangles, or if the triangles are far from that end. It is ignored until it changes.
+  /// The initial values are 0 and the full scale of the significant bits. A count becomes the lowest or the highest
+  /// count if several pixels had this count in every frame, noise changed the other pixels, and no pixel exceeded this
+  /// count. Such a count is the limit of a temperature range, or of a camera with fewer bits than the format. A pixel
+  /// that had the lowest or the highest count in every frame is defective if it is outside the triangles, or if the
+  /// levels of the triangles are far from this count. A defective pixel is ignored until it changes.
   [[nodiscard]] int learn(const AveragedPicture& picture, const RadiometricScale& scale,
                           const TargetPlate& mounted_plate, const Registration& registration, double contrast_k);
-  /// Returns the number of pixels of the window at an end of the counts, without the defective ones.
+  /// Returns the number of pixels in the window at the lowest or the highest count, without defective pixels.
   [[nodiscard]] int saturated_pixels(const Frame& frame, const cv::Rect& window) const;
 
  private:
@@ -32,11 +34,11 @@ class SaturationWatch {
   [[nodiscard]] bool at_end(std::uint16_t count) const { return count <= low_end_ || count >= high_end_; }
 
   int low_end_ = 0, high_end_ = 65535;
-  cv::Mat1b defective_;  ///< empty: not yet learnt
+  cv::Mat1b defective_;  ///< empty: not yet determined
 };
 
-/// Returns whether more than one in a thousand pixels stay at an end of the counts in every frame. The ends are those
-/// of SaturationWatch::learn().
+/// Returns whether more than one in a thousand pixels have the lowest or the highest count in every frame. The two
+/// counts are determined as in SaturationWatch::learn().
 [[nodiscard]] bool saturated(const AveragedPicture& picture);
 
 }  // namespace todbench

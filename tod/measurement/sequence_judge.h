@@ -17,10 +17,13 @@ namespace todbench {
 /// Use of the frames of a pass by an observer.
 enum class SequenceObserver {
   single_frame,  ///< judges the first frame only
-  tracking_sum,  ///< adds the scores of all frames, each at the target's true place: pursuit, an upper bound
-  static_sum,    ///< averages all frames at the target's place in the middle of the pass: persistence without pursuit
-  /// Combines all frames by the place of the target in each into one picture on a grid twice as fine, and judges it:
-  /// dynamic super-resolution of a known motion (super_resolve()).
+  /// Adds the scores of all frames, each at the true position of the target: an upper bound for pursuit by the eye.
+  tracking_sum,
+  /// Averages all frames and judges the mean at the target's position in the middle of the pass: persistence without
+  /// pursuit.
+  static_sum,
+  /// Combines all frames into one picture on a grid twice as fine and judges this picture: dynamic super-resolution of
+  /// a known motion (super_resolve()). The position of the target in each frame is known.
   super_resolution,
 };
 inline constexpr std::array all_sequence_observers{SequenceObserver::single_frame, SequenceObserver::tracking_sum,
@@ -30,7 +33,8 @@ inline constexpr std::array all_sequence_observers{SequenceObserver::single_fram
 /// One triangle in the frames of a pass.
 struct SeenSequence {
   std::span<const cv::Mat1f> frames;  ///< whole frames in kelvin, at least one
-  std::vector<cv::Point2d> places;    ///< positions of its centroid in each frame, pixel centres at integers
+  /// Position of the triangle's centroid in each frame, with pixel centres at integers.
+  std::vector<cv::Point2d> places;
   double contrast_k = 0;
   double noise_k = 0;  ///< noise of the sensor in one frame
 };
@@ -43,18 +47,19 @@ class SequenceJudge {
   [[nodiscard]] static Result<SequenceJudge> prepare(TemplateObserver& observer, std::span<const double> sizes);
 
   [[nodiscard]] std::size_t sizes() const { return sizes_.size(); }
-  /// Returns the side, in samples, of a window that is large enough for every observer at this size, search included.
+  /// Returns the side, in samples, of a window that is large enough for every observer at this size, including the
+  /// search.
   [[nodiscard]] int window_samples(std::size_t size) const;
   /// Returns the chosen alternative. Precondition: the windows round all positions are inside the frames.
   [[nodiscard]] int choose(SequenceObserver kind, std::size_t size, const SeenSequence& seen,
                            const RandomStream& noise) const;
 
  private:
-  /// Observer and bank of one size. The bank extends half a sample further than the observer's search, so that the
+  /// Observer and bank of one size. The bank extends half a sample beyond the search range of the observer, so that the
   /// search can be centred on any true position between two samples.
   struct PreparedSize {
     std::shared_ptr<const PreparedObserver> observer;
-    std::shared_ptr<const PreparedObserver> finer;  ///< for a picture on the grid twice as fine
+    std::shared_ptr<const PreparedObserver> finer;  ///< observer for a picture on a grid twice as fine
     std::shared_ptr<const TemplateBank> bank;
   };
   [[nodiscard]] int tracked(const PreparedSize& size, const SeenSequence& seen, const RandomStream& noise) const;

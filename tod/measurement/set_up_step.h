@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Preparation of a set-up with a plate at rest or in motion: location of the plate, polarity of its triangles,
-// effective contrast. Both kinds of measurement share these checks and messages.
+// Prepares a set-up: locates the plate, checks the polarity of its triangles and measures the effective contrast. Used
+// for plates at rest and for moving plates.
 #pragma once
 
 #include <functional>
@@ -27,85 +27,103 @@ namespace todbench {
 [[nodiscard]] FrameTakerOptions taker_options(const MeasurementOptions& options, const SourceInfo& camera,
                                               std::function<void(const RejectedFrame&)> on_rejected = {});
 
-/// Checks a measurement before the camera is started. Errors: `calibration` (counts without temperature for contrasts
-/// in kelvin), `invalid_input` (sizes or windows that do not fit; contrasts in grey levels with a plate that has fewer
-/// than two large enough triangles), those of the observer.
+/// Checks a measurement before the camera is started. Errors: `calibration` (contrasts in kelvin, but a camera without
+/// a temperature scale); `invalid_input` (sizes or windows that do not fit, or contrasts in grey levels and a plate
+/// with fewer than two large enough triangles); the errors of the observer.
 [[nodiscard]] Result<void> check_before_measuring(const MeasurementOptions& options, Observer& observer,
                                                   const SourceInfo& camera);
 /// Performs the part of check_before_measuring() that needs only the plates.
 [[nodiscard]] Result<void> check_grey_references(const MeasurementOptions& options);
 
-/// A contrast in the form that is used for judging.
+/// Contrast of a set-up, with the noise and the scale that are needed for judging.
 struct SeenContrast {
-  double contrast_k = 0;      ///< effective
-  double noise_k = 0;         ///< noise of a pixel in one frame, as it affects an observer; 0: not measured
-  double camera_noise_k = 0;  ///< the same for the camera's own frames, before any stage
-  double levels_per_k = 0;    ///< signal transfer; 0: the contrast is in kelvin
-  GreySteps steps{};          ///< filled if the contrast is in grey levels
-  std::optional<double> standard_error_k{};     ///< as in Presentation
-  std::vector<ReferenceTriangle> references{};  ///< in kelvin; empty if the contrast is in grey levels
-  std::optional<double> small_contrast_k{};     ///< as Presentation::small_delta_t_k
-  std::optional<JudgedScale> judged{};          ///< empty: no stage after the camera
-  std::optional<PlaceFit> large{};  ///< fit of the large triangles in the average; empty: contrast not settled, or in
-                                    ///< grey levels
+  /// Effective contrast.
+  double contrast_k = 0;
+  /// Noise of a pixel in one frame, with the correction for memory and for the stages. 0: not measured.
+  double noise_k = 0;
+  /// Noise of a pixel in one frame of the camera, before any stage.
+  double camera_noise_k = 0;
+  /// Signal transfer in grey levels per kelvin. 0: the contrast is in kelvin.
+  double levels_per_k = 0;
+  /// Resolution of the grey levels. Used only if the contrast is in grey levels.
+  GreySteps steps{};
+  /// Standard error of the contrast. Empty: fewer than two triangles, or a contrast in grey levels.
+  std::optional<double> standard_error_k{};
+  /// Large triangles with their contrasts in kelvin. Empty if the contrast is in grey levels.
+  std::vector<ReferenceTriangle> references{};
+  /// Contrast of the smaller triangles (Presentation::small_delta_t_k). Empty: not measured.
+  std::optional<double> small_contrast_k{};
+  /// Scale of the judged pictures. Empty: no stage after the camera.
+  std::optional<JudgedScale> judged{};
+  /// Fit of the large triangles in the average. Empty: the contrast had not settled, or is in grey levels.
+  std::optional<PlaceFit> large{};
 };
 
-/// Returns the reason why a contrast was observed without the sign of its set-point. It is below one count of the
-/// camera (`kelvin_per_count`, if known), it does not exceed the noise (three standard errors), or one of the signs is
-/// wrong.
+/// Returns a message for a contrast that was observed without the sign of its set-point. The message states one of
+/// three reasons: the contrast is below one count of the camera (`kelvin_per_count`, if known), it does not exceed
+/// three standard errors, or the target or the camera has the wrong sign.
 [[nodiscard]] std::string unexpected_sign(double set_k, const EffectiveContrast& observed, ContrastUnit unit,
                                           std::optional<double> kelvin_per_count);
 
-/// Locates plates and measures their effective contrasts. One thread at a time. The arguments must outlive it.
+/// Locates plates and measures their effective contrasts. One thread at a time. The arguments of the constructor must
+/// outlive the object.
 class SetUpStep {
  public:
+  /// `note`: called with each note, for example about saturation.
   SetUpStep(const MeasurementOptions& options, const FrameSource& camera, FrameTaker& taker,
             std::function<void(const std::string&)> note)
       : options_(options), camera_(camera), taker_(taker), note_(std::move(note)) {}
 
-  /// States whether the contrast of the next averages has settled. If not, they are not compared with earlier pictures.
+  /// Sets whether the contrast of the next averages has settled. Averages with a contrast that has not settled are not
+  /// compared with earlier pictures.
   void expect(ContrastWait wait) { wait_ = wait; }
-  /// Takes the frames in which a plate is located, and learns the noise from the first frames that show any.
+  /// Takes the frames in which a plate is located, and returns their average. Stores the noise of the first average
+  /// that has noise.
   [[nodiscard]] Result<AveragedPicture> look(std::stop_token stop);
-  /// Locates the plate in the average. `mounted_plate` agrees with `state`. Errors: those of register_plate(), opposite
-  /// polarity.
+  /// Locates the plate in the average. Precondition: `mounted_plate` agrees with `state`. Errors: those of
+  /// register_plate(); `calibration` (saturated picture, or triangles with the opposite polarity).
   [[nodiscard]] Result<Registration> find(const AveragedPicture& picture, const TargetPlate& mounted_plate,
                                           const TargetState& state) const;
   /// Returns a note if the target reports a contrast that differs from its set-point.
   [[nodiscard]] std::optional<std::string> read_back_deviation(const TargetState& set,
                                                                const PresentedTarget& said) const;
-  /// Takes the frames of the effective contrast. Errors: those of effective_contrast(); `calibration` (wrong sign,
-  /// beyond MeasurementOptions::max_contrast_error, or frames that contradict the scan, see ScanWatch).
+  /// Takes frames and measures the effective contrast in them. Errors: those of effective_contrast(); `calibration`
+  /// (wrong sign, a deviation above MeasurementOptions::max_contrast_error, or frames that contradict the scan, see
+  /// ScanWatch).
   [[nodiscard]] Result<SeenContrast> contrast(const TargetPlate& mounted_plate, const Registration& registration,
                                               const TargetState& set, const PresentedTarget& said,
                                               std::stop_token stop);
-  /// Measures the contrast of a presentation in its own frames. It replaces the contrast of `seen` if it exceeds its
-  /// noise. Errors: those of effective_contrast(); `calibration` (pixels without a temperature).
+  /// Measures the contrast of a presentation in its own frames. Returns `seen` with this contrast if it has the sign of
+  /// the set-point and exceeds five standard errors; otherwise `seen` keeps its contrast. Errors: those of
+  /// effective_contrast(); `calibration` (pixels without a temperature).
   [[nodiscard]] Result<SeenContrast> own_contrast(std::span<const Frame> frames, const TargetPlate& mounted_plate,
                                                   const Registration& registration, const TargetState& set,
                                                   SeenContrast seen) const;
-  /// Measures the grey levels of one frame of the set-up whose contrast was measured last. Errors: those of
-  /// grey_contrast(); `calibration` if the contrast is less than three of its standard uncertainties.
+  /// Measures the contrast of one frame in grey levels. Precondition: the contrast of this set-up was measured last.
+  /// Errors: those of grey_contrast(); `calibration` if the contrast is below three times its standard uncertainty.
   [[nodiscard]] Result<GreyFrame> grey_frame(const Frame& frame, const TargetPlate& mounted_plate,
                                              const Registration& registration, const TargetState& set,
                                              const SeenContrast& seen) const;
-  /// Returns the kelvin of the judged frame per kelvin of the set-up whose contrast was measured last. Errors: those of
-  /// judged_gain().
+  /// Returns the gain of the judged frame: kelvin in this frame per kelvin in the camera's frames. 1 without stages.
+  /// Precondition: the contrast of this set-up was measured last. Errors: those of judged_gain().
   [[nodiscard]] Result<double> gain_of(const Frame& frame, const TargetPlate& mounted_plate,
                                        const Registration& registration, const SeenContrast& seen) const;
-  /// Returns the number of pixels of the window at an end of the counts, without the defective ones.
+  /// Returns the number of pixels in the window at the lowest or the highest count, without defective pixels.
   [[nodiscard]] int saturated_pixels(const Frame& frame, const cv::Rect& window) const {
     return saturation_.saturated_pixels(frame, window);
   }
-  /// Same for samples of the judged picture, whose range of counts may differ from that of the camera.
+  /// Returns the number of samples of the judged picture in the window at the lowest or the highest count. The range of
+  /// counts after the stages may differ from that of the camera.
   [[nodiscard]] int saturated_samples(const Frame& frame, const cv::Rect& window) const;
 
   /// Returns the temporal noise per pixel and frame, from differences of successive frames; 0: not measured.
   [[nodiscard]] double temporal_noise_k() const { return temporal_noise_k_; }
+  /// Returns the temporal noise in steps of the counts, near the surround; empty: not measured.
   [[nodiscard]] std::optional<double> noise_counts() const { return noise_counts_; }
+  /// Returns the lag-1 correlation of the noise; empty: too few frames.
   [[nodiscard]] std::optional<double> lag1_correlation() const { return lag1_correlation_; }
 
-  /// Returns results that show whether the camera remained constant, from the averages so far.
+  /// Returns the data for the tests of whether the camera remained constant, from the averages taken until now.
   [[nodiscard]] const RunConstancy& constancy() const { return constancy_; }
 
  private:
@@ -117,7 +135,7 @@ class SetUpStep {
   [[nodiscard]] double response(const std::string& plate) const;
   void note_saturation(const AveragedPicture& picture, const TargetPlate& mounted_plate,
                        const Registration& registration, const TargetState& set, double contrast);
-  /// Learns the ends of the counts in the stages' pictures. `contrast`: contrast after the stages.
+  /// Determines the lowest and the highest count of the judged pictures. `contrast`: contrast after the stages.
   void note_saturation_behind(const JudgedFrames& frames, const TargetPlate& mounted_plate, const TargetState& set,
                               double contrast);
   [[nodiscard]] Result<SeenContrast> in_kelvin(const EffectiveContrast& measured, const TargetState& set) const;
@@ -125,7 +143,7 @@ class SetUpStep {
   [[nodiscard]] SeenContrast in_grey_levels(const AveragedPicture& picture, const EffectiveContrast& measured,
                                             const TargetState& set, const PresentedTarget& said);
 
-  /// Keeps the residue that is largest relative to its limit.
+  /// Keeps the residue with the largest ratio of share to limit.
   void keep_residue(const std::optional<PictureResidue>& residue);
   /// Adjusts `seen` for the stages after the camera.
   void judge_by(const std::optional<JudgedScale>& judged, const TargetState& set, SeenContrast& seen);
@@ -135,16 +153,18 @@ class SetUpStep {
   FrameTaker& taker_;
   std::function<void(const std::string&)> note_;
   SaturationWatch saturation_, saturation_behind_;
-  std::map<std::string, double> learnt_response_;  ///< by plate; replaces the response of the options
+  /// Response by plate. It replaces MeasurementOptions::contrast_response.
+  std::map<std::string, double> learnt_response_;
   double temporal_noise_k_ = 0;
-  /// Noise as it affects an observer; successive frames contain only a part of noise with memory.
+  /// Noise of a pixel in one frame. It exceeds temporal_noise_k_ if the noise has memory, because differences of
+  /// successive frames contain only a part of such noise.
   double noise_of_frame_k_ = 0;
   double memory_ratio_ = 1;              ///< JudgedMemory::ratio()
-  std::vector<double> noted_contrasts_;  ///< contrasts after the stages
+  std::vector<double> noted_contrasts_;  ///< set contrasts for which a note about the stages was added
   std::optional<double> noise_counts_, lag1_correlation_;
   ContrastWait wait_ = ContrastWait::settled;
-  cv::Mat1d before_;         ///< mean of the last average; empty: none yet
-  cv::Mat1d judged_before_;  ///< the same of the judged pictures; empty: no stage changed them
+  cv::Mat1d before_;         ///< mean of the last average; empty: no average yet
+  cv::Mat1d judged_before_;  ///< mean of the judged pictures of the last average; empty: no stage changed them
   RunConstancy constancy_;
   ScanWatch scan_;
 };

@@ -10,17 +10,19 @@
 
 namespace todbench {
 
-/// Outcome of a change of the target, for the target and for the frames.
+/// Outcome of a change of the target: result of the target, and result of taking frames.
 struct TargetChange {
   Result<PresentedTarget> presented;
-  Result<void> frames;  ///< result for the frames taken in the meantime, if any
-  /// The camera failed first, and the wait for the target was cancelled. The target's error is then only a consequence.
+  Result<void> frames;  ///< result of taking frames during the change; success if no frames were taken
+  /// True if the camera failed first and the wait for the target was cancelled. The error of the target is then only a
+  /// consequence.
   bool given_up = false;
 };
 
-/// Presents a state and handles the frames sent in the meantime as RunController::frames_while_presenting() states. If
-/// they are taken, a second thread takes them. A camera failure then ends the wait for the target, because a black body
-/// may need minutes and the state has to be presented again anyway. Errors: only those of the host.
+/// Presents a state. Frames that the camera sends during the change are treated as
+/// RunController::frames_while_presenting() states. If they are taken, a second thread takes them. A failure of the
+/// camera then ends the wait for the target: a black body may need minutes to settle, and the state must be presented
+/// again after the failure. Errors: only those of `host`.
 [[nodiscard]] Result<TargetChange> change_target(Target& target, FrameTaker& taker, RunController& host,
                                                  const TargetState& state, std::stop_token stop);
 

@@ -26,7 +26,7 @@ struct PresentationShown {
   double point_delta_t_k = 0;  ///< set contrast of the point of the curve
   const SeenContrast& seen;
   std::int64_t presentation = 0;
-  std::span<const Frame> first_frames;  ///< frames already taken; the remaining ones are taken from the camera
+  std::span<const Frame> first_frames;  ///< frames already taken; the remaining frames are taken from the camera
   int frames = 1;                       ///< total number of frames
 };
 
@@ -34,21 +34,22 @@ struct PresentationShown {
 struct PresentationAnswers {
   std::vector<Trial> trials;     ///< one per triangle of the plate
   std::vector<Patch> patches;    ///< windows in the first frame, one per trial
-  std::vector<GreyFrame> greys;  ///< one per frame if contrasts are in grey levels
+  std::vector<GreyFrame> greys;  ///< one element per frame if contrasts are in grey levels; otherwise empty
 };
 
-/// Obtains an observer's answers to the triangles of a presentation. One thread at a time. The arguments must outlive
-/// it.
+/// Obtains an observer's answers to the triangles of a presentation. One thread at a time. The arguments of the
+/// constructor must outlive the object.
 class TrialJudge {
  public:
   TrialJudge(const MeasurementOptions& options, Observer& observer, FrameTaker& taker, SetUpStep& step)
       : options_(options), observer_(observer), taker_(taker), step_(step) {}
 
-  /// Returns the answers to all triangles. Errors: those of the camera; `calibration` (a window leaves the picture);
-  /// `internal` (frames whose sampling differs from the options); those of the observer.
+  /// Returns the answers to all triangles. Errors: those of the camera; `calibration` (a window is partly outside the
+  /// picture); `internal` (frames whose sampling differs from the options); those of the observer.
   [[nodiscard]] Result<PresentationAnswers> answers(const PresentationShown& shown, const std::stop_token& stop);
 
-  /// Returns the side of a window in camera pixels for a side in samples of the judged picture: the next even number.
+  /// Converts the side of a window from samples of the judged picture to pixels of the camera. The result is an even
+  /// number that covers the window.
   [[nodiscard]] int in_pixels(int side) const;
 
  private:

@@ -8,14 +8,15 @@
 
 namespace todbench {
 
-/// Limits of bad pixels. They are common rules, not a standard; an acceptance test states its own limits.
+/// Limits above which a pixel is bad. The defaults are common rules, not a standard; an acceptance test states its own
+/// limits.
 struct BadPixelRules {
-  double dead_responsivity = 0.25;  ///< |responsivity / median - 1| above this
-  double noisy = 3;                 ///< temporal standard deviation above this multiple of the median
-  double offset = 5;                ///< |offset - median| above this multiple of 1.4826 x median deviation
+  double dead_responsivity = 0.25;  ///< limit of |responsivity / median - 1|
+  double noisy = 3;                 ///< limit of the temporal standard deviation, as a multiple of the median
+  double offset = 5;                ///< limit of |offset - median|, as a multiple of 1.4826 x median deviation
 };
 
-/// Measured properties of each pixel. An empty picture means not measured; its rule finds no pixels.
+/// Measured properties of each pixel. Empty picture: the property was not measured, and its rule finds no pixels.
 struct PixelProperties {
   cv::Mat1d responsivity{};  ///< signal per kelvin
   cv::Mat1d offset{};        ///< mean signal of a flat field
@@ -24,11 +25,11 @@ struct PixelProperties {
 
 /// Bad pixels by rule, and their clusters.
 struct BadPixels {
-  cv::Mat1b dead, noisy, offset;  ///< 255 if the rule holds
+  cv::Mat1b dead, noisy, offset;  ///< 255 if the pixel exceeds the limit
   cv::Mat1b bad;                  ///< any of the three
   int count = 0;
-  int clusters = 0;         ///< clusters of at least two pixels that touch, also diagonally
-  int largest_cluster = 0;  ///< in pixels; 1 if none touch, 0 without bad pixels
+  int clusters = 0;         ///< number of clusters of at least two touching pixels, also diagonally
+  int largest_cluster = 0;  ///< number of pixels; 1 if no bad pixels touch, 0 without bad pixels
   double operability_percent = 100;
 };
 

@@ -11,8 +11,8 @@ namespace todbench {
 /// divided by the variance of a sample, so that q is chi-square up to a constant. Columns are scaled to equal length. A
 /// ridge of 1e-13 of this length makes the solution unique if columns are dependent.
 ///
-/// Active-set method (Stark and Parker 1995): finite, exact to rounding. 36 unknowns take about 50 us without a
-/// starting point.
+/// Active-set method (Stark and Parker 1995). It ends after a finite number of steps and is exact except for rounding.
+/// 36 unknowns take about 50 us without a starting point.
 class BoundedLeastSquares {
  public:
   /// Solves the problem. `gram` is stored by rows. Precondition: low <= high, matching sizes, no NaN. Bounds may be
@@ -20,11 +20,11 @@ class BoundedLeastSquares {
   BoundedLeastSquares(const std::vector<double>& gram, const std::vector<double>& right, const std::vector<double>& low,
                       const std::vector<double>& high);
 
-  /// Returns the the minimum.
+  /// Returns the x of the minimum.
   [[nodiscard]] const std::vector<double>& best() const { return best_.x; }
   /// Returns q(x) - q(best), at least 0.
   [[nodiscard]] double excess(const std::vector<double>& x) const;
-  /// Returns the x with the largest direction'x among all with an excess of at most `allowed`.
+  /// Returns the x with the largest direction'x among all x with an excess of at most `allowed`.
   [[nodiscard]] std::vector<double> farthest(const std::vector<double>& direction, double allowed) const;
 
  private:
@@ -39,7 +39,7 @@ class BoundedLeastSquares {
   [[nodiscard]] std::vector<double> unscaled(std::vector<double> x) const;
 
   std::size_t n_;
-  std::vector<double> scale_, gram_, right_, low_, high_;  ///< of the scaled unknowns, x / scale
+  std::vector<double> scale_, gram_, right_, low_, high_;  ///< problem in scaled unknowns, x / scale
   State scaled_best_, best_;
   std::vector<double> slope_at_best_;  ///< half the gradient of q
 };

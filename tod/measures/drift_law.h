@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Drift of a camera after a non-uniformity correction: growth of the mean and of the spatial noise.
+// Drift of a camera after a non-uniformity correction: change of the mean and increase of the spatial noise.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -20,7 +20,7 @@ struct DriftGroup {
   cv::Mat1d mean_k;
 };
 
-/// Form of the growth with time.
+/// Form of the change with time.
 enum class DriftShape {
   linear,    ///< t
   approach,  ///< 1 - exp(-t / T)
@@ -30,22 +30,22 @@ enum class DriftShape {
 /// One quantity over time.
 struct DriftFit {
   DriftShape shape = DriftShape::linear;
-  double change_k = 0;                    ///< from the first group to the last, according to the fit
+  double change_k = 0;                    ///< change from the first group to the last, according to the fit
   Interval change_ci95{};                 ///< in kelvin
-  std::optional<double> time_constant_s;  ///< of an approach
-  Interval time_constant_ci95{};          ///< the interval is open on a side that the data do not determine
+  std::optional<double> time_constant_s;  ///< time constant of an approach; empty for a straight line
+  Interval time_constant_ci95{};          ///< a side that the data do not determine is open
   double p_linear = 1;                    ///< p value of a straight line against an approach (F test)
-  std::vector<double> seen_k, fitted_k;   ///< by group
+  std::vector<double> seen_k, fitted_k;   ///< observed and fitted values of each group
 };
 
-/// Drift of a camera: growth after a correction.
+/// Drift of a camera after a correction.
 struct DriftLaw {
-  std::vector<double> time_s;  ///< of the groups
-  /// Mean of the picture. Its interval includes a chance deviation from 0: that of the mean of as many draws of the
-  /// pattern as the picture has pixels.
+  std::vector<double> time_s;  ///< mean times of the groups
+  /// Mean of the picture. Its interval allows for a random change of the mean that is due to the change of the pattern:
+  /// standard deviation of the pattern's change divided by the root of the number of pixels.
   DriftFit level;
-  /// Standard deviation over the pixels of their change since the first group, without white noise, mean and shading of
-  /// second order. Its change is never negative; an interval that begins at 0 does not prove a change.
+  /// Standard deviation, over the pixels, of their change since the first group. White noise, mean and shading of
+  /// second order are removed. The change is never negative. If its interval begins at 0, no change is proven.
   DriftFit pattern;
 
   /// Returns a change in kelvin per minute, averaged over the time from the first group to the last.
@@ -55,12 +55,12 @@ struct DriftLaw {
 /// Minimum number of groups of drift_law().
 inline constexpr std::size_t least_drift_groups = 8;
 
-/// Fits both quantities over time, with groups weighted by their frames. The level is fitted by least squares. The
-/// pattern is fitted by analysis of variance of the pixels' regressions on time, with modified large-sample intervals
-/// (Graybill and Wang 1980). If the residuals of a straight line exceed chance, it is replaced by an approach with the
-/// least-squares time constant (F test at 1 %). For the pattern, F is reduced by the gain that a search for a time
-/// constant finds in the noise of many pixels. Errors: `invalid_input` (fewer than eight groups, groups without frames,
-/// times that do not increase, pictures below 4 x 4 pixels or of different sizes).
+/// Fits level and pattern as functions of time. Groups are weighted by their number of frames. The level is fitted by
+/// least squares. The pattern is fitted by analysis of variance of the pixels' regressions on time, with modified
+/// large-sample intervals (Graybill and Wang 1980). If the residuals of a straight line are significant (F test at 1
+/// %), the straight line is replaced by an approach with the least-squares time constant. For the pattern, F is reduced
+/// by the gain that a search for a time constant finds in the noise of many pixels. Errors: `invalid_input` (fewer than
+/// eight groups, groups without frames, times that do not increase, pictures below 4 x 4 pixels or of different sizes).
 [[nodiscard]] Result<DriftLaw> drift_law(std::span<const DriftGroup> groups);
 
 }  // namespace todbench

@@ -18,8 +18,8 @@ struct EdgeLevels {
   double count_step = 0;   ///< step of a picture of integer counts, otherwise 0
 };
 
-/// Returns the clipped side ("bright", "dark"), if any. A side is clipped if its plateau has a single value next to
-/// values that scatter, or if the profile meets the plateau at a corner.
+/// Returns the clipped side ("bright" or "dark"); empty if no side is clipped. A side is clipped if its plateau has a
+/// single value although the neighbouring values scatter, or if the profile has a corner at the plateau.
 [[nodiscard]] std::optional<std::string_view> clipped_side(const std::vector<EdgeSample>& samples,
                                                            const EdgeLevels& levels);
 

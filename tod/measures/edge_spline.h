@@ -26,7 +26,7 @@ struct Spline {
   [[nodiscard]] double slope(double t) const;
 };
 
-/// Normal equations of a fit. They are sums over samples, so the sums of a part of the samples can be subtracted later.
+/// Normal equations of a fit. They are sums over samples, so a part of the samples can be removed later by subtraction.
 class SplineSums {
  public:
   explicit SplineSums(const SplineGrid& grid);
@@ -35,14 +35,15 @@ class SplineSums {
   SplineSums& operator+=(const SplineSums& other);
   SplineSums& operator-=(const SplineSums& other);
   [[nodiscard]] double samples() const { return samples_; }
-  /// Returns the least-squares curve. A small penalty on third differences bridges intervals without samples. At half a
-  /// cycle per four knots it changes an amplitude by less than 1e-5. Empty if there are fewer samples than
-  /// coefficients.
+  /// Returns the least-squares curve. A small penalty on third differences determines the curve in intervals without
+  /// samples. The penalty changes an amplitude at half a cycle per four knots by less than 1e-5. Empty if there are
+  /// fewer samples than coefficients.
   [[nodiscard]] std::optional<Spline> solve() const;
 
  private:
   SplineGrid grid_;
-  std::vector<std::array<double, 4>> band_;  ///< the diagonal and the elements on its right
+  /// For each row, the diagonal element and the three elements to the right of it.
+  std::vector<std::array<double, 4>> band_;
   std::vector<double> right_;
   double samples_ = 0;
 };

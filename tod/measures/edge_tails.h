@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tails of an edge: light that optics and electronics spread over large distances, as a bounded mixture of shapes.
+// Tails of an edge: light that optics and electronics spread over large distances. The model is a bounded mixture of
+// shapes.
 #pragma once
 
 #include <array>
@@ -15,16 +16,16 @@ namespace todbench {
 
 /// Model of a picture of cut-outs with level D and step S:
 ///     D + (S - sum beta - alpha / k) G + (alpha / k) C + sum beta_i H_i + shading,
-/// G is the picture of the cut-outs blurred by a narrow normal. C is the same picture blurred with an MTF of exp(-k f),
-/// and H_i the same picture blurred by a normal of sigma_i = 2 ... 70 pitches, in 23 steps of constant ratio. k is 2 pi
-/// cauchy_pitch, f the frequency in cycles per pitch. alpha / S is the slope of the MTF at frequency 0 due to
-/// diffraction, beta_i / S the share of a halo. Any positive mixture of normal halos is included, such as exponential
-/// and power-law halos. The shapes need to be correct only outside the core; the core is measured from the residuals,
-/// without a model.
+/// G is the picture of the cut-outs after a narrow Gaussian blur. C is the picture of the cut-outs after a blur with
+/// the MTF exp(-k f), where k is 2 pi cauchy_pitch and f the frequency in cycles per pitch. H_i is the picture of the
+/// cut-outs after a Gaussian blur of sigma_i = 2 ... 70 pitches, in 23 steps of constant ratio. alpha / S is the slope
+/// of the MTF at frequency 0 due to diffraction, and beta_i / S is the share of halo i. Any positive mixture of
+/// Gaussian halos can be represented, for example exponential and power-law halos. The shapes need to be correct only
+/// outside the core. The core is measured from the residuals, without a model.
 ///
 /// The MTF is relative to a source of the size of the picture. Halos with a sigma above TailBounds::widest_pitch are
-/// fitted, because they distort the picture, but they are not part of the MTF, because they lower the contrast of the
-/// whole picture. The MTF therefore refers to the contrast S - sum beta, with the sum over these wide halos.
+/// fitted, because they distort the picture. They are not part of the MTF, because they lower the contrast of the whole
+/// picture. The MTF therefore refers to the contrast S - sum beta, where the sum is over these wide halos.
 namespace edge_tails {
 constexpr std::size_t halos = 23;
 constexpr std::size_t level = 0, step = 1, slope = 2, first_halo = 3, first_shading = first_halo + halos;
@@ -34,7 +35,8 @@ constexpr double cauchy_pitch = 0.5;  ///< width of C: its MTF is exp(-2 pi cauc
 [[nodiscard]] double halo_sigma_pitch(std::size_t i);
 }  // namespace edge_tails
 
-/// Computes the columns of the model at a place of a picture (x, y in pixels): level, step, slope, halos, then shading.
+/// Computes the columns of the model at a position in a picture (x, y in pixels): level, step, slope, halos, then
+/// shading.
 using TailColumns = std::function<void(cv::Point2d at, std::vector<double>& columns)>;
 
 /// A cut-out: its middle, and the vectors from the middle to two of its sides, in pixels.
@@ -43,28 +45,30 @@ struct TailRectangle {
 };
 /// Sets the first columns for upright or rotated rectangles.
 void set_tail_columns(const std::vector<TailRectangle>& cut_outs, cv::Point2d at, std::vector<double>& columns);
-/// Same for a half plane: `t` is the distance from its edge in pitches, positive inside.
+/// Sets the first columns for a half plane. `t`: distance from its edge in pitches, positive inside.
 void set_tail_columns(double t, std::vector<double>& columns);
 
 /// Prior bounds of the tails.
 struct TailBounds {
-  double least_slope_pitch = 0;  ///< of the MTF at frequency 0 due to diffraction, per cycle per pitch
+  double least_slope_pitch = 0;  ///< smallest slope of the MTF at frequency 0 due to diffraction, per cycle per pitch
+  /// Largest slope of the MTF at frequency 0 due to diffraction, per cycle per pitch.
   double most_slope_pitch = 3;
-  /// Largest share of the contrast in the halos that are part of the MTF. If only this bound limits an interval, its
-  /// lower end is not stated.
+  /// Largest share of the contrast in the halos that are part of the MTF. If this bound alone determines an interval,
+  /// the lower limit of the interval is not stated.
   double most_halo = 0.2;
   double widest_pitch = 70;  ///< largest sigma of a halo that is part of the MTF
-  double most_wide = 0.5;    ///< largest share of the step in the wider halos
+  double most_wide = 0.5;    ///< largest share of the step in halos wider than widest_pitch
 };
 /// Returns the bounds for a stated aperture: 0.9 to 1.8 times (4 / pi) wavelength f-number / pitch. Obscured pupils and
-/// aberrations can only make the slope steeper; 0.9 allows for errors of the stated band and f-number.
+/// aberrations can only increase the slope. The factor 0.9 allows for errors of the stated band and f-number.
 [[nodiscard]] TailBounds diffraction_bounds(double f_number, double mean_wavelength_um, double pitch_um);
 
-/// Returns the transfer of each of the first columns at a frequency in cycles per pitch; 0 for the level and for wide
-/// halos.
+/// Returns the transfer of each of the first columns at a frequency in cycles per pitch. It is 0 for the level and for
+/// wide halos.
 [[nodiscard]] std::array<double, edge_tails::first_shading> tail_transfer(double frequency_per_pitch,
                                                                           const TailBounds& bounds);
-/// Returns the contrast to which the MTF refers, as a linear function of the first columns' factors.
+/// Returns the coefficients of the contrast to which the MTF refers. This contrast is a linear function of the factors
+/// of the first columns.
 [[nodiscard]] std::array<double, edge_tails::first_shading> tail_contrast(const TailBounds& bounds);
 
 /// Fit of the model to a picture outside the core of every edge.
@@ -72,21 +76,23 @@ class TailFit {
  public:
   /// Returns the most likely values of the unknowns, in the order of the columns.
   [[nodiscard]] const std::vector<double>& best() const { return problem_->best(); }
-  /// Returns the values of the unknowns with the weakest tails, among all with a chi-square of at most 1 above the
-  /// minimum. For an edge without tails, the result therefore contains no tails.
+  /// Returns the values of the unknowns with the weakest tails among all values whose chi-square is at most 1 above the
+  /// minimum. For an edge without tails, these values contain no tails.
   [[nodiscard]] const std::vector<double>& stated() const { return stated_; }
-  /// Returns the values x of the unknowns with the largest scalar product of `direction` and x, among all with a
-  /// chi-square of at most 5.99 above the minimum (95 %).
+  /// Returns the values x of the unknowns with the largest scalar product of `direction` and x, among all x whose
+  /// chi-square is at most 5.99 above the minimum (95 %).
   [[nodiscard]] std::vector<double> farthest(const std::vector<double>& direction) const;
-  /// Returns whether the halos reach the upper bound, so that the picture does not limit their share.
+  /// Returns whether the share of the halos in x is at its upper bound. The picture then does not limit this share.
   [[nodiscard]] bool at_most_halo(const std::vector<double>& x) const;
   [[nodiscard]] const TailBounds& bounds() const { return bounds_; }
-  /// Returns the upper end of the 95 % interval of the share of halos that are part of the MTF.
+  /// Returns the upper limit of the 95 % interval of the share of halos that are part of the MTF.
   [[nodiscard]] double halo_allowance() const;
-  /// Return the ends of the 95 % interval of the share of the step in halos that are too wide for the MTF.
+  /// Return the lower and the upper limit of the 95 % interval of the share of the step in halos that are too wide for
+  /// the MTF.
   [[nodiscard]] double least_wide_share() const { return farthest_wide_share(-1); }
   [[nodiscard]] double most_wide_share() const { return farthest_wide_share(1); }
-  [[nodiscard]] double noise() const { return noise_; }  ///< of a pixel, in the unit of the samples
+  /// Standard deviation of a pixel, in the unit of the samples.
+  [[nodiscard]] double noise() const { return noise_; }
   [[nodiscard]] std::size_t unknowns() const { return unknowns_; }
 
  private:
@@ -105,7 +111,7 @@ class TailSamples {
   explicit TailSamples(std::size_t shading_columns);
   /// Adds the mean of `pixels` pixels near one position. Samples of one `block` (counted from 0) are close together.
   void add(const std::vector<double>& columns, double value, int pixels, std::size_t block);
-  /// Fits the model; empty with fewer than two samples for each unknown, or if one side of the edge has no samples.
+  /// Fits the model. Empty with fewer than two samples for each unknown, or if one side of the edge has no samples.
   [[nodiscard]] std::optional<TailFit> fit(const TailBounds& bounds) const;
 
  private:

@@ -15,7 +15,7 @@ struct EdgeWindow {
   [[nodiscard]] double at(double t) const;
 };
 
-/// Sums over groups of neighbouring rows, so that each group can be left out.
+/// Sums over all samples, and over groups of neighbouring rows, so that each group can be left out.
 struct EdgeGroups {
   SplineSums all;
   std::vector<SplineSums> groups;
@@ -34,17 +34,17 @@ struct EdgeTails {
 /// MTF at each frequency with its 95 % interval.
 struct EdgeTransfer {
   std::vector<double> mtf, low, high;
-  std::vector<bool> low_known;  ///< false: only the bound on halos limits `low`
+  std::vector<bool> low_known;  ///< false: only TailBounds::most_halo determines `low`
 };
-/// Computes the MTF: the modulus of the transform of the profile's derivative within the window, plus the part of the
-/// tails outside the window and the region, which is linear in the unknowns of the tails. It is 1 at frequency 0 and
-/// corrected for the contribution of noise to a modulus.
+/// Computes the MTF. It is the modulus of two parts: the transform of the derivative of the profile within the window,
+/// and the transform of the tails outside the window, which is linear in the unknowns of the tails. The MTF is 1 at
+/// frequency 0. It is corrected for the contribution of noise to a modulus.
 ///
-/// The 95 % intervals combine three contributions: the extremes over all tails within chi-square 5.99 of the best; the
-/// noise (jackknife over the groups); and `rounding`, the effect on the profile of counts whose noise is too small to
-/// spread them, as a share of the step. `displacement_pitch2`: variance of the lines' positions along the normal in
-/// excess of the straight edge. It lowers the measured MTF, so the upper end is raised. Empty if a part cannot be
-/// fitted.
+/// The 95 % intervals combine three contributions: the extremes over all tails with a chi-square of at most 5.99 above
+/// the minimum; the noise (jackknife over the groups); and `rounding`. `rounding`: error of the profile, as a share of
+/// the step, due to rounding to counts if the noise is too small to average it out. `displacement_pitch2`: variance of
+/// the positions of the lines along the normal relative to the straight edge. It lowers the measured MTF, so the upper
+/// limit is increased. The result is empty if a part cannot be fitted.
 [[nodiscard]] EdgeTransfer edge_transfer(const EdgeGroups& groups, const EdgeWindow& window,
                                          const std::vector<double>& frequency_per_pitch, const EdgeTails& tails,
                                          double rounding, double displacement_pitch2);

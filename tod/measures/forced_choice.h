@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Threshold of a person from correct and wrong answers at contrasts of both polarities, with two alternatives each.
+// Threshold of a person from binary answers to pairs of intervals, at contrasts of both polarities.
 #pragma once
 
 #include <map>
@@ -21,31 +21,32 @@ struct ForcedChoice {
 /// Threshold of one person for one target.
 struct ForcedChoiceThreshold {
   std::optional<double> positive_k{}, negative_k{};  ///< contrast for 75 % correct answers; the negative one is below 0
-  std::optional<double> half_k{};                    ///< half of their difference
+  std::optional<double> half_k{};                    ///< half of (positive_k - negative_k)
   Interval ci95{};                                   ///< interval of half_k
-  std::map<int, double> half_k_without{};            ///< half_k if the answers of one set-up are left out, by set-up
+  std::map<int, double> half_k_without{};            ///< half_k without the answers of one set-up, by set-up
   double lapse = 0;                                  ///< share of answers that do not depend on the picture
   int answers = 0, right = 0;
   std::string reason{};  ///< reason for a missing threshold; empty if there is one
 };
 
-/// Returns the variance of ln of a value by jackknife over parts of the data, such as set-ups. `without`: the values
-/// without each part. Precondition: all values above 0.
+/// Returns the variance of the logarithm of a value by jackknife over parts of the data, such as set-ups. `without`:
+/// values without one part of the data, by part. Precondition: all values above 0.
 [[nodiscard]] double jackknife_variance_of_ln(const std::map<int, double>& without);
 
 /// Minimum number of answers at each polarity, and minimum number of set-ups, for a threshold.
 inline constexpr int least_choices = 24, least_choice_set_ups = 5;
 
-/// Fits 0.5 l + (1 - l) Phi(0.674 (c / t)^b) to the answers. The same function is fitted to the model's answers
-/// (two_intervals.h), but with one exponent b (0.5 to 6) for both polarities and, because a person lapses, a share l of
-/// lapses (0 to 0.06). At each of 36 pairs of b and l, ln t of each polarity is fitted by maximum likelihood; the
-/// result is the mean over the pairs, weighted by the likelihood. t is a threshold without lapses, as for the model.
-/// The half difference does not contain the offset of the target.
+/// Fits the probability 0.5 l + (1 - l) Phi(0.674 (c / t)^b) to the answers. It differs from the function for the
+/// answers of the model (two_intervals.h) in two ways: the exponent b (0.5 to 6) is common to both polarities, and
+/// there is a share l of lapses (0 to 0.06), because a person lapses. At each of 36 pairs of b and l, ln t of each
+/// polarity is fitted by maximum likelihood. The result is the mean over the pairs, weighted by the likelihood. t is a
+/// threshold without lapses, as for the model. Half of the difference of the two thresholds does not contain the offset
+/// of the target.
 ///
-/// The interval for ln half_k comes from the jackknife over the set-ups, with Student's t. Its variance is at least
-/// that of independent answers: the observed information at each pair plus the scatter between the pairs. If there is
-/// no threshold, the reason is one of these: too few answers or set-ups, answers that do not differ from guessing (p >
-/// 0.001), or a threshold outside the presented contrasts.
+/// The interval of ln half_k is computed by jackknife over the set-ups, with Student's t. Its variance is at least the
+/// variance of independent answers, which is computed from the observed information at each pair and from the scatter
+/// between the pairs. There is no threshold in three cases: too few answers or set-ups, answers that do not differ from
+/// guessing (p > 0.001), or a threshold outside the presented contrasts.
 [[nodiscard]] ForcedChoiceThreshold forced_choice_threshold(std::span<const ForcedChoice> answers);
 
 }  // namespace todbench

@@ -6,8 +6,8 @@
 
 namespace todbench {
 
-/// Returns the median over all pixels; for an even number the mean of the two middle ones. Precondition: not empty, no
-/// NaN.
+/// Returns the median over all pixels. For an even number of pixels it is the mean of the two middle values.
+/// Precondition: not empty, no NaN.
 [[nodiscard]] double median_of(const cv::Mat1d& picture);
 /// Returns the median distance from the median.
 [[nodiscard]] double median_deviation_of(const cv::Mat1d& picture);

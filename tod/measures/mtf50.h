@@ -9,12 +9,13 @@
 
 namespace todbench {
 
-/// Returns the lowest frequency at which `values` are 0.5, linear between the tabulated frequencies; empty if all but
-/// the first are above 0.5.
+/// Returns the lowest frequency at which the MTF `values` is 0.5, with linear interpolation between the tabulated
+/// frequencies. Empty if all values after the first are above 0.5.
 [[nodiscard]] std::optional<double> first_half(const std::vector<double>& frequency, const std::vector<double>& values);
 
-/// Returns the interval of that frequency: the lowest frequencies at which the ends of the interval of the MTF are 0.5.
-/// An end is empty if its MTF is above 0.5 everywhere, or not known there (`low` is 0).
+/// Returns the interval of this frequency. Its limits are the lowest frequencies at which the limits `low` and `high`
+/// of the MTF are 0.5. A limit is empty if the MTF limit is above 0.5 everywhere, or is not known at this frequency
+/// (`low` is 0).
 [[nodiscard]] Interval mtf50_interval(const std::vector<double>& frequency, const std::vector<double>& low,
                                       const std::vector<double>& high);
 

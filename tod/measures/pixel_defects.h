@@ -17,9 +17,9 @@ namespace todbench {
 
 /// Kinds of defects.
 enum class PixelDefect {
-  stuck,         ///< the same value in every frame
-  offset,        ///< dead or hot according to its level in the flat field
-  unresponsive,  ///< dead according to its response to temperature
+  stuck,         ///< has the same value in every frame
+  offset,        ///< dead or hot pixel: the deviation of its level in the flat field exceeds the limit
+  unresponsive,  ///< dead pixel: the deviation of its response to temperature exceeds the limit
   noisy,
   blinking,     ///< switches between two levels, or stays on another level for several frames
   substituted,  ///< equals a neighbour, or the mean of neighbours, in every frame: substituted by the camera
@@ -30,30 +30,33 @@ inline constexpr std::array pixel_defect_kinds{PixelDefect::stuck, PixelDefect::
 
 /// Limits of defects.
 struct PixelDefectRules {
-  BadPixelRules bad;     ///< dead_responsivity, noisy, offset
-  double blinking = 3;   ///< largest change of level, in its own standard deviations: above this multiple of the median
-  double levels = 4.5;   ///< or two levels this many standard deviations apart, both of the pixel and of the median
-                         ///< pixel
+  BadPixelRules bad;  ///< dead_responsivity, noisy, offset
+  /// Limit of the largest change of level in units of its standard deviation, as a multiple of the median over the
+  /// pixels.
+  double blinking = 3;
+  /// Limit of the distance between two levels, in standard deviations of the pixel and also in standard deviations of
+  /// the median pixel.
+  double levels = 4.5;
   double chance = 1e-3;  ///< probability, over all pixels, that a live pixel is classified as substituted
 };
 
 /// Known properties of the scene.
 struct PixelScene {
-  cv::Mat1d shading{};                     ///< subtracted from the mean frame before levels are compared; empty: none
-  cv::Mat1d responsivity{};                ///< signal per kelvin; NaN if not measured; empty: measured for no pixel
+  cv::Mat1d shading{};       ///< subtracted from the mean frame before levels are compared; empty: not subtracted
+  cv::Mat1d responsivity{};  ///< signal per kelvin; NaN if not measured; empty: measured for no pixel
   std::optional<double> unit_per_count{};  ///< unit of the frames per count; empty: not known
 };
 
 /// Defective pixels of a cube of frames.
 struct PixelDefects {
   int frames = 0;
-  std::array<cv::Mat1b, pixel_defect_kinds.size()> found;  ///< by kind: 255 for a defect
+  std::array<cv::Mat1b, pixel_defect_kinds.size()> found;  ///< 255 for each defect, by kind
   cv::Mat1b bad;                                           ///< any kind except substituted
   cv::Mat1b defective;                                     ///< any kind
   cv::Mat1i cluster;                      ///< size of the cluster of touching pixels, also diagonally; 0: not defective
-  cv::Mat1d noise_sd;                     ///< temporal, without the common part of rows and columns
-  cv::Mat1d mean_frame;                   ///< without the shading
-  int response_tested = 0;                ///< pixels with a known response
+  cv::Mat1d noise_sd;                     ///< temporal noise of each pixel, without the common part of rows and columns
+  cv::Mat1d mean_frame;                   ///< mean over the frames, minus the shading
+  int response_tested = 0;                ///< number of pixels with a known response
   std::vector<std::string> not_tested{};  ///< sentences about kinds that cannot be detected in these frames
 
   [[nodiscard]] const cv::Mat1b& of(PixelDefect kind) const { return found[static_cast<std::size_t>(kind)]; }
@@ -63,26 +66,26 @@ struct PixelDefects {
 /// unit of the frames. Errors: `invalid_input` (fewer than 16 frames or fewer than 8 rows or columns, frames of
 /// different sizes, a value that is not finite, no noise, or noise below half a count, which hides defects).
 ///
-/// Stuck: the pixel has a single value; tested if fewer than 0.01 live pixels are expected in this state by chance.
-/// Offset, response and noise: bad_pixels(). Blinking: tested from 48 frames on, with the frames in at most 64 blocks.
-/// One criterion is the largest difference between the mean of some successive blocks and the mean of the others,
-/// divided by its standard uncertainty from successive differences. The other is the best partition of the values into
-/// two classes of at least three frames.
+/// Stuck: the pixel has a single value. Tested only if this is expected by chance for fewer than 0.01 live pixels.
+/// Offset, response and noise: bad_pixels(). Blinking: tested with at least 48 frames, which are combined into at most
+/// 64 blocks. There are two criteria. The first is the largest difference between the mean of successive blocks and the
+/// mean of all other blocks, divided by its standard uncertainty from successive differences. The second is the
+/// distance of two levels in the best partition of the values into two classes of at least three frames.
 ///
-/// Substituted: the pixel differs from a neighbour, or from the mean of two to four of the nearest or of all eight,
-/// with less variance than `chance` permits for a live pixel. The test is chi-squared, against the difference of the
-/// median pixel; frames with memory count as fewer. Of two equal pixels, the later one in reading order is regarded as
-/// the copy.
+/// Substituted: the pixel nearly equals a neighbour, the mean of two to four of the nearest neighbours, or the mean of
+/// all eight neighbours. The variance of the difference is then lower than `chance` permits for a live pixel. It is
+/// compared with the variance of the median pixel by a chi-square test, with a reduced number of frames for noise with
+/// memory. Of two equal pixels, the later one in reading order is regarded as the copy.
 [[nodiscard]] Result<PixelDefects> pixel_defects(std::span<const cv::Mat1f> frames, const PixelScene& scene,
                                                  const PixelDefectRules& rules);
 
 /// Counts in a zone of the picture, in pixels.
 struct ZoneCount {
-  int pixels = 0;    ///< pixels of the zone in the picture
+  int pixels = 0;    ///< number of pixels of the zone inside the picture
   int measured = 0;  ///< number of these pixels that were measured
   int bad = 0, substituted = 0;
-  int clusters = 0;         ///< clusters of at least two defective pixels, with a pixel in the zone
-  int largest_cluster = 0;  ///< in pixels, including pixels outside the zone; 1: none touch
+  int clusters = 0;         ///< number of clusters of at least two defective pixels that have a pixel in the zone
+  int largest_cluster = 0;  ///< number of pixels, including pixels outside the zone; 1: no defective pixels touch
 };
 /// Counts the pixels of a zone. `zone` in pixels of the picture; `field`: examined part.
 [[nodiscard]] ZoneCount count_zone(const PixelDefects& defects, const cv::Rect& field, const cv::Rect& zone);

@@ -15,18 +15,20 @@ namespace todbench {
 /// - 1.
 struct PixelNoise {
   int frames = 0;
-  double sd_rms = 0;                      ///< root of the mean variance of the pixels: the temporal noise
-  std::pair<double, double> sd_rms_ci95;  ///< chi-squared with pixels x (T - 1) degrees of freedom: for independent
-                                          ///< pixels and frames
-  double sd_rms_detrended = 0;            ///< without each pixel's straight line in time (divisor T - 2)
-  double sd_frame_differences = 0;        ///< sqrt(mean d^2 / 2) of successive frames: too low by sqrt(1 - rho)
-  double mean_of_pixel_sd = 0;            ///< too low by c4 and by the spread of the pixels; stated in some data sheets
-  double c4 = 1;  ///< mean of the standard deviation of T normal values divided by their true one
+  double sd_rms = 0;  ///< root of the mean variance of the pixels: the temporal noise
+  /// Interval of sd_rms for independent pixels and frames: chi-squared with pixels x (T - 1) degrees of freedom.
+  std::pair<double, double> sd_rms_ci95;
+  double sd_rms_detrended = 0;      ///< sd_rms after removal of a straight line in time from each pixel (divisor T - 2)
+  double sd_frame_differences = 0;  ///< sqrt(mean d^2 / 2) of successive frames; too low by the factor sqrt(1 - rho)
+  /// Mean of the pixels' standard deviations, stated in some data sheets; too low by the factor c4 and because of the
+  /// spread of the pixels.
+  double mean_of_pixel_sd = 0;
+  double c4 = 1;  ///< mean of the standard deviation of T normal values, divided by its true value
   double mean_of_pixel_sd_corrected = 0;  ///< mean_of_pixel_sd / c4
-  double median_pixel_sd = 0;             ///< insensitive to noisy pixels
+  double median_pixel_sd = 0;             ///< median of the pixels' standard deviations; insensitive to noisy pixels
   /// Variance of the mean frame over pixels, minus sd_rms^2 / T, the contribution of the temporal noise; signed.
   double fixed_pattern_variance = 0;
-  cv::Mat1d pixel_sd;    ///< of each pixel
+  cv::Mat1d pixel_sd;    ///< standard deviation of each pixel over time
   cv::Mat1d mean_frame;  ///< mean over time
 };
 
@@ -34,8 +36,8 @@ struct PixelNoise {
 /// (fewer than three frames or two pixels, frames of different sizes, a value that is not finite).
 [[nodiscard]] Result<PixelNoise> pixel_noise(std::span<const cv::Mat1d> frames);
 
-/// Smallest noise that can be measured. Below half a count rounding removes the noise. The remainder depends on the
-/// position of the mean between two counts (at 0.3 counts from 0.10 to 0.17 counts^2).
+/// Smallest noise that can be measured, in counts. If the noise is below half a count, its measured variance depends on
+/// the position of the mean between two counts. For a noise of 0.3 counts the variance is from 0.10 to 0.17 counts^2.
 inline constexpr double least_measurable_noise_counts = 0.5;
 
 }  // namespace todbench

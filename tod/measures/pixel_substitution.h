@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pixels that a camera has replaced by values of their neighbours, so that frames do not contain their own signal.
+// Substituted pixels: a camera has replaced their signal by values of their neighbours.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -10,13 +10,13 @@ namespace todbench {
 /// Limits of substituted pixels.
 struct SubstitutionRules {
   double chance = 1e-3;       ///< probability, over all pixels, that a live pixel is classified as substituted
-  double unit_per_count = 0;  ///< rounding of the frames; 0: not known
+  double unit_per_count = 0;  ///< step of rounding in the frames, in their unit; 0: not known
 };
 
 /// Result of substituted_pixels().
 struct SubstitutedPixels {
   cv::Mat1b found;      ///< 255 for a substituted pixel
-  bool tested = false;  ///< there were enough frames and a fine enough scale
+  bool tested = false;  ///< true: there are enough frames, and the scale is fine enough
 };
 
 /// Finds substituted pixels. `constant`: pixels that never change; they may equal each other without being copies.

@@ -15,12 +15,13 @@ struct ShiftedPicture {
   cv::Mat1d picture;
 };
 
-/// Model: picture = camera(x) + source(x - shift) + level of the picture. A linear slope can belong to the camera or to
-/// the source, because it changes only the levels. It is removed from both and stated separately.
+/// Model: picture = camera(x) + source(x - shift) + level of the picture. A shift of a linear slope changes only the
+/// level, so a slope cannot be assigned to the camera or to the source. It is removed from both patterns and stated
+/// separately.
 struct SeparatedPattern {
   cv::Mat1d camera;  ///< mean 0, without slope
   cv::Mat1d source;  ///< larger than a picture by the span of the shifts; mean 0, without slope
-  /// Slope of the mean picture per pixel along x and y: of the camera, of the source or of both.
+  /// Slope of the mean picture per pixel along x and y. It is the sum of the slopes of camera and source.
   cv::Point2d slope_per_px{0, 0};
   double residual = 0;  ///< root mean square of the residuals
 };

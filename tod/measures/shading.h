@@ -8,7 +8,7 @@ namespace todbench {
 
 /// A surface of second order that is fitted to a picture by least squares.
 struct Shading {
-  cv::Mat1d surface;  ///< without its mean
+  cv::Mat1d surface;  ///< fitted surface minus its mean
   double range = 0;   ///< largest minus smallest value
   double sd = 0;      ///< standard deviation over the pixels
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MTF from the picture of a slanted edge (e-SFR, in the spirit of ISO 12233).
+// MTF from the picture of a slanted edge (e-SFR, similar to ISO 12233).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -23,7 +23,7 @@ enum class EdgeAxis {
 /// Tails fitted to the picture of a whole plate.
 struct PlateTails {
   TailFit fit;
-  TailColumns columns;  ///< at positions in the part that shows the edge
+  TailColumns columns;  ///< columns at positions in the part of the picture with the edge
   double step = 1;      ///< signed step of the picture for a unit step of the model
 };
 
@@ -32,9 +32,10 @@ inline constexpr double least_wide_share = 0.002;
 
 /// Options of slanted_edge().
 struct SlantedEdgeOptions {
-  std::optional<EdgeAxis> axis{};  ///< empty: the axis across the edge in the picture
+  std::optional<EdgeAxis> axis{};  ///< empty: determined from the direction of the edge in the picture
   TailBounds tails{};              ///< bounds for tails fitted to the picture itself
-  /// Tails from a larger picture that contains this one; null: fit the tails to this picture, outside the core.
+  /// Tails from a larger picture that contains this picture. Null: the tails are fitted to this picture, outside the
+  /// core.
   const PlateTails* plate = nullptr;
 };
 
@@ -43,41 +44,45 @@ struct SlantedEdge {
   EdgeAxis axis = EdgeAxis::x;
   /// Angle from the axis to the edge's normal: the edge is at x0 - (row - middle) tan(angle); likewise for axis y.
   double angle_deg = 0;
-  double edge_at_pitch = 0;    ///< position on the middle row (column), in pixels from the centre of the first pixel
-  double curvature_pitch = 0;  ///< distance of the edge's middle from the straight line through its ends
+  /// Position of the edge on the middle row (column), in pixels from the centre of the first pixel.
+  double edge_at_pitch = 0;
+  /// Distance of the middle of the edge from the straight line through its two end points.
+  double curvature_pitch = 0;
   double step = 0;             ///< signal of the bright side minus signal of the dark side
   double noise_over_step = 0;  ///< standard deviation of a pixel about the edge profile
-  double shading_percent = 0;  ///< change of the two sides over the window in % of the step; removed if significant
-  double window_pitch = 0;     ///< range of the profile with full weight
-  int rows = 0;                ///< number of lines across the edge that were used
+  /// Change of the level of both sides over the window, in % of the step; removed if significant.
+  double shading_percent = 0;
+  double window_pitch = 0;                  ///< width of the range of the profile with full weight
+  int rows = 0;                             ///< number of lines across the edge that were used
   std::vector<double> frequency_per_pitch;  ///< 0 ... 1 cycle per pitch, along the normal
   std::vector<double> mtf;                  ///< 1 at frequency 0
-  std::vector<double> mtf_low, mtf_high;    ///< 95 %, not symmetric: use both ends; relative to a source of any size
-  /// Lower ends relative to a source of the size of the picture: as `mtf_low`, but without halos wider than
+  /// Limits of the 95 % interval relative to a source of any size. The interval is not symmetric, so use both limits.
+  std::vector<double> mtf_low, mtf_high;
+  /// Lower limits relative to a source of the size of the picture: as `mtf_low`, but without halos wider than
   /// `widest_halo_pitch`.
   std::vector<double> mtf_low_in_picture;
-  std::vector<bool> low_known;   ///< false: only TailBounds::most_halo limits `mtf_low`
-  double widest_halo_pitch = 0;  ///< largest sigma of a halo that is part of the MTF
-  double halo_allowance = 0;     ///< largest share of the step in halos that the interval includes
-  /// 95 % interval of the share of the step in halos wider than `widest_halo_pitch`. If its upper end is above
-  /// least_wide_share, `mtf_low` is lower than `mtf_low_in_picture` by that share.
+  std::vector<bool> low_known;   ///< false: only TailBounds::most_halo determines `mtf_low`
+  double widest_halo_pitch = 0;  ///< largest sigma of the halos that are part of the MTF
+  double halo_allowance = 0;     ///< largest share of the step that the interval allows for halos
+  /// Limits of the 95 % interval of the share of the step in halos wider than `widest_halo_pitch`. If the upper limit
+  /// is above least_wide_share, `mtf_low` is lower than `mtf_low_in_picture` by this share.
   double wide_halo_least = 0, wide_halo_most = 0;
-  double displacement_pitch = 0;          ///< standard deviation of the lines about the edge, if significant
+  double displacement_pitch = 0;  ///< standard deviation of the lines' positions about the edge; 0 if not significant
   std::optional<double> mtf50_per_pitch;  ///< lowest frequency at which the MTF is 0.5
   std::vector<std::string> notes;         ///< sentences
 };
 
-/// Projects every pixel along the edge, fits the profile by a cubic spline with four knots a pitch and transforms its
-/// derivative in closed form. There are no bins or finite differences, so no corrections for them are needed. The
-/// frequency axis is along the normal (the cosine of the angle is included). Intervals combine a jackknife over groups
-/// of neighbouring lines with Student's t, the extremes of the tails, and the method's own error (0.0005 up to half a
-/// cycle per pitch, see docs/method/physical-measures.md). The MTF is relative to a source of the size of the picture
-/// (edge_tails.h).
+/// Projects every pixel along the edge, fits a cubic spline with four knots per pitch to the profile, and transforms
+/// the derivative of the spline in closed form. No corrections for bins or finite differences are needed, because there
+/// are none. The frequency axis is along the normal (the cosine of the angle is included). Intervals combine three
+/// contributions: a jackknife over groups of neighbouring lines with Student's t, the extremes of the tails, and the
+/// error of the method (0.0005 up to half a cycle per pitch, see docs/method/physical-measures.md). The MTF is relative
+/// to a source of the size of the picture (edge_tails.h).
 ///
-/// Precondition: one straight edge with a flat field on both sides, in any linear unit. Errors: `invalid_input` in one
-/// sentence. The edge does not exceed the noise, leaves the picture, comes closer than 5 pitches to its border, is
-/// bent, or was clipped. Or the slant is less than a pitch over the picture, exceeds 46 degrees, or leaves gaps between
-/// the samples.
+/// Precondition: one straight edge with a flat field on both sides, in any linear unit. Errors: `invalid_input` (an
+/// edge that does not exceed the noise, is partly outside the picture or closer than 5 pitches to its border, is bent,
+/// or is clipped; a slant of less than a pitch over the picture or of more than 46 degrees, or a slant with gaps
+/// between the samples).
 [[nodiscard]] Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOptions& options);
 
 }  // namespace todbench

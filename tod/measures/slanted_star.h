@@ -13,7 +13,7 @@
 
 namespace todbench {
 
-/// A star in a picture: bright and dark sectors round a centre.
+/// Position of a star in a picture. A star consists of bright and dark sectors round a centre.
 struct StarPlace {
   cv::Point2d centre_px;  ///< measured from the centre of the first pixel
   double radius_px = 0;
@@ -23,8 +23,8 @@ struct StarPlace {
 enum class StarDirection {
   tangential,  ///< along that line, within 22.5 degrees (meridional)
   sagittal,    ///< across that line, within 22.5 degrees
-  oblique,     ///< between the two
-  central,     ///< the middle of the picture is in the star, so this line is undefined
+  oblique,     ///< between tangential and sagittal
+  central,     ///< undefined, because the star contains the middle of the picture
 };
 [[nodiscard]] std::string_view to_string(StarDirection direction);
 
@@ -34,13 +34,13 @@ struct StarEdge {
   double normal_deg = 0;  ///< direction of the MTF, from +x towards +y, 0 to 180
   StarDirection direction = StarDirection::central;
   cv::Rect region{};                      ///< part of the picture that contains no other edge
-  std::optional<SlantedEdge> measured{};  ///< empty: rejected
-  std::string rejected{};                 ///< reason
+  std::optional<SlantedEdge> measured{};  ///< result of slanted_edge(); empty: rejected
+  std::string rejected{};                 ///< reason for the rejection; otherwise empty
 };
 
-/// Finds the edges on circles round the centre and measures each in its own region (slanted_edge()). Edges are in the
-/// order of edge_deg. Errors: `invalid_input` (a star that extends beyond the picture, a radius below 30 pixels, an odd
-/// number of edges or fewer than 4, edges closer than 15 degrees, no edge that could be measured).
+/// Finds the edges on circles round the centre and measures each edge in its own region (slanted_edge()). Edges are in
+/// the order of edge_deg. Errors: `invalid_input` (a star that extends beyond the picture, a radius below 30 pixels, an
+/// odd number of edges or fewer than 4, edges closer than 15 degrees, or no edge that can be measured).
 [[nodiscard]] Result<std::vector<StarEdge>> slanted_star(const cv::Mat1d& picture, const StarPlace& star,
                                                          const SlantedEdgeOptions& options);
 

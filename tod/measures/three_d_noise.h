@@ -18,7 +18,7 @@ namespace todbench {
 /// vertical (constant along a row), h: horizontal (constant along a column). Unbiased for any number of frames, rows
 /// and columns (analysis of variance); a negative variance estimate is set to 0.
 struct ThreeDNoise {
-  double tvh = 0;  ///< pixels in time: the remainder
+  double tvh = 0;  ///< remaining variation of pixels in time
   double tv = 0;   ///< flickering rows
   double th = 0;   ///< flickering columns
   double t = 0;    ///< whole frames
@@ -55,23 +55,25 @@ class ByComponent {
 /// Analysis of variance of the table frames x rows x columns, one value per cell (Scheffé 1959, ch. 7).
 struct NoiseTable {
   int frames = 0, rows = 0, columns = 0;
-  ByComponent mean_squares;        ///< in the square of the frames' unit
+  ByComponent mean_squares;        ///< mean squares in the squared unit of the frames
   ByComponent degrees_of_freedom;  ///< t T-1, v V-1, h H-1, and their products
-  /// First-order correlation of tvh in successive frames that the estimates include; 0: the plain analysis of variance
-  /// with independent cells. In T frames with memory the variance in time is smaller than that of the noise, and more
-  /// than 1/T of it remains in the mean frame: E Q_tvh = h tvh^2 and E Q_vh = T vh^2 + g tvh^2 with g = 1 + 2 sum over
-  /// k < T of (1 - k / T) rho^k and h = 1 - (g - 1) / (T - 1). Without this correction, rho = 0.8 and 64 frames yield 6
-  /// % less noise and an apparent fixed pattern of a third of the noise. The value is below 1.
+  /// First-order correlation rho of tvh in successive frames, for which the estimates are corrected; below 1. 0:
+  /// analysis of variance with independent cells. If the noise has memory, its variance over T frames is too small, and
+  /// more than 1/T of the variance remains in the mean frame: E Q_tvh = h tvh^2 and E Q_vh = T vh^2 + g tvh^2 with g =
+  /// 1 + 2 sum over k < T of (1 - k / T) rho^k and h = 1 - (g - 1) / (T - 1). For example, with rho = 0.8 and 64
+  /// frames, the uncorrected noise is 6 % too low, and there is an apparent fixed pattern of a third of the noise.
   double pixel_memory = 0;
 };
 
 /// A variance component with its uncertainty.
 struct ComponentEstimate {
-  /// Signed and unbiased. Equal to the correction for finite sampling of Haefner and Burks (Appl. Opt. 54, 4907, 2015).
+  /// Signed and unbiased. Equal to the estimate with the correction for finite sampling of Haefner and Burks (Appl.
+  /// Opt. 54, 4907, 2015).
   double variance = 0;
   /// 95 % interval for normal components: modified large sample (Ting et al. 1990, Graybill and Wang 1980). Signed. For
-  /// noise with memory, half of the memory correction is added in quadrature. The reason is the mean of two frames: it
-  /// has the same lag-1 correlation as noise of first order, but needs only half of the correction.
+  /// noise with memory, half of the memory correction is added in quadrature, because the correction depends on the
+  /// kind of memory. For example, the mean of two frames has the same lag-1 correlation as noise of first order, but
+  /// needs only half of the correction.
   double low = 0, high = 0;
   /// For tv, th and vh: probability of a mean square at least this large without the component (F test against tvh).
   /// Empty: no test for this component, or no noise to test against.
@@ -84,9 +86,9 @@ struct ComponentEstimate {
 /// interval of a sum of mean squares (Graybill and Wang 1980).
 [[nodiscard]] ComponentEstimate temporal_variance(const NoiseTable& table);
 
-/// Accumulates the frames of a table one after another without storing them. It needs the memory of three pictures in
-/// double precision. A fixed scene or pattern and changes of whole frames do not reduce the precision of the other
-/// components. One thread at a time.
+/// Computes a table from frames that are added one after another. Frames are not stored; the memory is that of three
+/// pictures in double precision. The precision of a component does not depend on a fixed scene, a fixed pattern or
+/// changes of whole frames. One thread at a time.
 class NoiseCube {
  public:
   /// Add a frame. Errors: `invalid_input` (not the size of the first frame, or a value that is not finite).
@@ -96,37 +98,38 @@ class NoiseCube {
   [[nodiscard]] int frames() const { return frames_; }
   /// Returns the table. Errors: `invalid_input` (fewer than two frames, rows or columns).
   [[nodiscard]] Result<NoiseTable> table() const;
-  /// Same after subtraction of a fixed picture, for example the shading of the field. This changes v, h and vh.
-  /// Precondition: `fixed` has the frames' size.
+  /// Returns the table after subtraction of a fixed picture, for example the shading of the field. The subtraction
+  /// changes v, h and vh. Precondition: `fixed` has the size of the frames.
   [[nodiscard]] Result<NoiseTable> table_without(const cv::Mat1d& fixed) const;
   /// Returns the mean over all frames. Precondition: at least one frame.
   [[nodiscard]] cv::Mat1d mean_frame() const { return first_ + change_ / frames_; }
-  /// Returns the lag-1 correlation of a pixel without rows, columns and whole frames. It is the rho of first-order
-  /// noise that has the same ratio of mean squared successive difference to mean square, for the same number of frames;
-  /// -0.99 to 0.99. Empty: no noise, or fewer than five frames.
+  /// Returns the lag-1 correlation of a pixel after removal of rows, columns and whole frames, in -0.99 to 0.99. It is
+  /// the rho of first-order noise with the same number of frames and the same ratio of mean squared successive
+  /// difference to mean square. Empty: no noise, or fewer than five frames.
   [[nodiscard]] std::optional<double> lag1_correlation() const;
-  /// Returns NoiseTable::pixel_memory of these frames: lag1_correlation() if it exceeds five standard errors and is at
-  /// most 0.95, otherwise 0. Above 0.95 so few frames do not distinguish it from drift.
+  /// Returns NoiseTable::pixel_memory of these frames. It is lag1_correlation() if this value exceeds five standard
+  /// errors and is at most 0.95, otherwise 0. A correlation above 0.95 cannot be distinguished from drift in so few
+  /// frames.
   [[nodiscard]] double pixel_memory() const;
-  /// Returns the index of the first frame that differs from the previous one more than other frames do, pixel by pixel,
-  /// because of a correction or a moved scene. The statistic is the mean square of the difference without its rows,
-  /// columns and mean. Its expectation is the same for every pair, regardless of the memory of the noise. The limit is
-  /// 1.69 times the value of the median pair; chance exceeds it in less than 1e-9 of all recordings. Empty: no such
+  /// Returns the index of the first frame that differs significantly from the previous frame, because of a correction
+  /// or a moved scene. The statistic is the mean square of the difference of two successive frames, after removal of
+  /// rows, columns and mean. Its expectation is equal for all pairs, also for noise with memory. The limit is 1.69
+  /// times the value of the median pair. Chance exceeds this limit in less than 1e-9 of all recordings. Empty: no such
   /// frame, or fewer than five frames.
   [[nodiscard]] std::optional<int> abrupt_change() const;
-  /// Returns whether at most three pairs of successive frames stand out, as with a correction. A pair stands out if its
-  /// mean square difference is above 1.3 times the median. If more stand out, the noise changes or the scene moves, and
-  /// the result of abrupt_change() is meaningless.
+  /// Returns whether at most three pairs of successive frames have a mean square difference above 1.3 times the median.
+  /// This is the case if a correction occurred. With more such pairs, the noise changes or the scene moves, and the
+  /// result of abrupt_change() is meaningless.
   [[nodiscard]] bool few_pairs_stand_out() const;
-  /// Returns whether the noise of a pixel differs between the first and the second half of the frames: the mean square
-  /// differences of successive frames, as in abrupt_change(), have a ratio above 1.15 (7 % of the noise), which chance
-  /// exceeds in less than 1e-9 of all recordings. False for fewer than eight frames.
+  /// Returns whether the noise of a pixel differs between the first and the second half of the frames. True if the mean
+  /// square differences of successive frames, as in abrupt_change(), have a ratio above 1.15 (7 % of the noise). Chance
+  /// exceeds this limit in less than 1e-9 of all recordings. False for fewer than eight frames.
   [[nodiscard]] bool noise_changes() const;
-  /// Returns the index of a row at the upper or lower edge that is no part of the picture, for example telemetry. Each of
-  /// the outer four rows is compared with the four rows further inside. A row is outside the picture if its mean square
-  /// successive difference, without changes of the whole row, exceeds 100 times theirs, or if the mean difference of its
-  /// adjacent pixels in the mean frame exceeds 10 times theirs. Noise and a scene behind a lens stay far below both
-  /// limits. Empty: no such row, or fewer than 16 rows.
+  /// Returns the index of a row at the upper or lower edge that is not part of the picture, for example telemetry. Each
+  /// of the outer four rows is compared with the four rows further inside. A row is outside the picture if one of two
+  /// conditions is met. Its mean square successive difference, without changes of the whole row, exceeds 100 times
+  /// theirs. Or the mean difference of its adjacent pixels in the mean frame exceeds 10 times theirs. Noise and a scene
+  /// behind a lens stay far below both limits. Empty: no such row, or fewer than 16 rows.
   [[nodiscard]] std::optional<int> row_outside_picture() const;
 
  private:
@@ -134,14 +137,15 @@ class NoiseCube {
   [[nodiscard]] Result<void> add_frame(const cv::Mat_<Pixel>& frame);
 
   int frames_ = 0;
-  cv::Mat1d first_;                               ///< first frame, the reference of every frame
-  cv::Mat1d change_;                              ///< sum over frames of (change - mean change of its frame)
-  double squares_ = 0;                            ///< sum of the squares of these changes
-  cv::Mat1d last_;                                ///< change of the last frame without its mean
-  std::vector<double> steps_;                     ///< mean square of each successive difference
-  std::vector<double> row_steps_;                 ///< sum of the squares of successive differences about their row mean
-  std::vector<double> frame_means_;               ///< mean change of each frame
-  std::vector<double> row_means_, column_means_;  ///< of each frame in order, without the frame's mean
+  cv::Mat1d first_;                  ///< first frame, the reference of every frame
+  cv::Mat1d change_;                 ///< sum over frames of (change - mean change of its frame)
+  double squares_ = 0;               ///< sum of the squares of these changes
+  cv::Mat1d last_;                   ///< change of the last frame without its mean
+  std::vector<double> steps_;        ///< mean square of each successive difference
+  std::vector<double> row_steps_;    ///< sum of squares of the successive differences of each row, about their mean
+  std::vector<double> frame_means_;  ///< mean change of each frame
+  /// Means of rows and columns of each frame in order, minus the mean of the frame.
+  std::vector<double> row_means_, column_means_;
 };
 
 }  // namespace todbench

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two-interval decisions of an observer: share of correct answers from its scores, and the contrast for 75 % correct.
+// Two-interval decisions of an observer: share of correct answers computed from its scores, and contrast for 75 %
+// correct answers.
 #pragma once
 
 #include <array>
@@ -15,7 +16,7 @@ using IntervalScores = std::vector<std::vector<float>>;
 /// Share of correct decisions that defines a threshold.
 inline constexpr double threshold_share = 0.75;
 
-/// Share of pairs with its standard error.
+/// Share of correctly decided pairs, with its standard error.
 struct ShareOfPairs {
   double mean = 0, standard_error = 0;
 };
@@ -25,21 +26,21 @@ struct ShareOfPairs {
 /// Precondition: at least two draws, all rows of equal length.
 [[nodiscard]] ShareOfPairs share_of_pairs(const IntervalScores& pattern, const IntervalScores& other);
 
-/// First crossing of 75 % over increasing contrasts, interpolated in probit over ln contrast.
+/// Lowest contrast at which the share increases across 75 %, interpolated as probit of the share over ln contrast.
 struct PassedContrast {
   std::optional<double> contrast_k;
   double relative_error = 0;
 };
-/// Finds the crossing; empty if the shares do not cross 75 %.
+/// Finds this contrast. `contrast_k` is empty if the shares do not cross 75 %.
 [[nodiscard]] PassedContrast passed_contrast(std::span<const double> contrasts_k, std::span<const ShareOfPairs> shares);
 
-/// Psychometric function of contrast, Phi(z75 (c / threshold)^exponent): sensitivity d' is a power function of contrast
-/// (Foley and Legge 1981). Sampling changes the energy of a pattern with its phase p, because its spectrum interferes
-/// with the repeats at integer cycles per sample. The threshold decreases with the square root of the energy: threshold
-/// = level / sqrt(1 + swing[0] cos(2 pi p) + swing[1] sin(2 pi p)). The sine term is needed if the position of the
-/// pattern is known only up to an offset of a fraction of a sample.
+/// Psychometric function of the contrast c, Phi(z75 (c / threshold)^exponent): sensitivity d' is a power function of
+/// contrast (Foley and Legge 1981). After sampling, the energy of a pattern depends on its phase p, because its
+/// spectrum interferes with the repeats at integer cycles per sample. The threshold is inversely proportional to the
+/// square root of the energy: threshold = level / sqrt(1 + swing[0] cos(2 pi p) + swing[1] sin(2 pi p)). The sine term
+/// is needed if the position of the pattern has an unknown offset of a fraction of a sample.
 struct ContrastFunction {
-  double level_k = 0;             ///< threshold of the mean energy over the phases
+  double level_k = 0;             ///< threshold for the mean energy over the phases
   double exponent = 1;            ///< between 0.3 and 8
   std::array<double, 2> swing{};  ///< 0 if phases were not fitted
 
@@ -59,11 +60,11 @@ struct ContrastShare {
 /// Whether the swing over phases is fitted.
 enum class PhaseFit { none, swing };
 
-/// Fits the function by weighted least squares to the shares within a factor of `fitted_span` of `near_k`; weights by
-/// binomial variance. Empty if they do not determine a threshold within that range.
+/// Fits the function by weighted least squares to the shares at contrasts within a factor of `fitted_span` of `near_k`.
+/// Weights are the inverse binomial variances. Empty if the shares do not determine a threshold in this range.
 [[nodiscard]] std::optional<ContrastFunction> fit_contrast(std::span<const ContrastShare> shares, double near_k,
                                                            PhaseFit phases = PhaseFit::none);
-inline constexpr double fitted_span = 3.3;  ///< a series of contrasts in steps of factor 2 has three or four values in
-                                            ///< it
+/// Range of fit_contrast(), as a factor. It contains three or four contrasts of a series with steps of factor 2.
+inline constexpr double fitted_span = 3.3;
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests whether a fitted observer could have given a person's answers.
+// Tests whether the answers of a person agree with a fitted observer.
 #pragma once
 
 #include <array>
@@ -14,14 +14,15 @@
 
 namespace todbench {
 
-/// Test statistics. Each is large if the model is wrong.
+/// Test statistics. A large value is evidence against the model.
 enum class MisfitKind {
   contrast_and_size,  ///< number correct by contrast and size: sum of (observed - expected)^2 / variance
-  confusion,          ///< the same for answers by the direction of the triangle and the answered direction
-  calibration,        ///< the same for the number correct of patches of similar predicted probability
-  surprise,           ///< (sum of -ln p of the answers - its expectation)^2 / variance
-  wrong_answers,      ///< as surprise, but for wrong answers only: p of the chosen alternative given that the answer is
-                      ///< wrong
+  confusion,    ///< the same sum for the number of answers, by direction of the triangle and by answered direction
+  calibration,  ///< the same sum for the number correct, over groups of patches with similar predicted probability
+  surprise,     ///< (sum of -ln p of the answers - its expectation)^2 / variance
+  /// As surprise, but only for wrong answers. p is the probability of the chosen alternative, given that the answer is
+  /// wrong.
+  wrong_answers,
 };
 inline constexpr std::array all_misfit_kinds{MisfitKind::contrast_and_size, MisfitKind::confusion,
                                              MisfitKind::calibration, MisfitKind::surprise, MisfitKind::wrong_answers};
@@ -31,7 +32,9 @@ inline constexpr std::array all_misfit_kinds{MisfitKind::contrast_and_size, Misf
 struct MisfitTest {
   double statistic = 0;
   double expected = 0;  ///< mean over the replicates
-  double p = 1;         ///< from chi-squared with the mean and variance of the replicates (Satterthwaite 1946)
+  /// P value from a scaled chi-squared distribution with the mean and the variance of the replicates (Satterthwaite
+  /// 1946).
+  double p = 1;
 };
 
 /// Answers at one contrast and size.
@@ -43,8 +46,9 @@ struct AnswerCell {
 
 /// Result of goodness_of().
 struct Goodness {
-  std::array<MisfitTest, all_misfit_kinds.size()> tests{};  ///< by MisfitKind
-  /// Share of replicates of the fitted model whose smallest p is at most the observed one: result of the joint test.
+  std::array<MisfitTest, all_misfit_kinds.size()> tests{};  ///< one test for each MisfitKind
+  /// Result of the joint test: share of replicates of the fitted model whose smallest p is at most the smallest
+  /// observed p.
   double p = 1;
   int replicates = 0;
   std::vector<AnswerCell> cells;
@@ -57,8 +61,8 @@ struct GoodnessOptions {
   std::uint64_t seed = 1;
 };
 
-/// Tests a fit by parametric bootstrap. The fitted model answers the same patches and is then fitted to its own
-/// answers; this yields the distribution of every statistic. Errors: `interrupted`.
+/// Tests a fit by parametric bootstrap. In each replicate, the fitted model answers the same patches, and the model is
+/// fitted to these answers. The distribution of every statistic is computed from the replicates. Errors: `interrupted`.
 [[nodiscard]] Result<Goodness> goodness_of(AnswerLattice& lattice, std::span<const PersonAnswer> answers,
                                            const PersonFit& fit, const GoodnessOptions& options, std::stop_token stop);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Parameters of a template observer that can be fitted, and the answers for the fit.
+// Parameters of a template observer that can be fitted, and the answers to which they are fitted.
 #pragma once
 
 #include <array>
@@ -10,10 +10,10 @@
 
 namespace todbench {
 
-/// Kind of the fitted observer. It determines the meaning of the first two parameters.
+/// Kind of the fitted observer. It determines the first two fitted parameters.
 enum class FittedKind {
   blurred,  ///< blur_sigma_samples and internal_noise
-  eye,      ///< gain of the sensitivity of the eye, and its contrast_noise
+  eye,      ///< factor of the sensitivity of the eye, and contrast_noise of the eye
 };
 
 /// Fitted parameters, named as for a blurred observer. Lapse is the share of answers that do not depend on the patch
@@ -50,7 +50,8 @@ using ObserverPlace = std::array<double, observer_key_count>;
 struct PersonAnswer {
   std::size_t patch = 0;  ///< index in the lattice
   int answer = 0, truth = 0;
-  int cell = 0;  ///< contrast and size, numbered by the caller; residuals are grouped by it
+  /// Number of the combination of contrast and size, assigned by the caller. Residuals are grouped by this number.
+  int cell = 0;
 };
 
 }  // namespace todbench

@@ -10,23 +10,24 @@
 
 namespace todbench {
 
-/// One parameter among several people, in terms of ln of its value (the lapse itself).
+/// One parameter among several people. Statistics are those of the logarithm of the parameter; for the lapse, of the
+/// lapse itself.
 struct PeopleSpread {
   int persons = 0;             ///< number of persons with a standard error; others are ignored
-  std::optional<double> mean;  ///< mean value, geometric if in logarithms; empty for fewer than two persons
-  Interval mean_ci95;          ///< Hartung and Knapp 2001, Student's t with persons - 1
-  /// Standard deviation between people in excess of the standard errors, of ln of the value (of the lapse itself).
-  /// Computed by restricted maximum likelihood (Viechtbauer 2005).
+  std::optional<double> mean;  ///< mean value (for logarithms: geometric mean); empty for fewer than two persons
+  Interval mean_ci95;          ///< after Hartung and Knapp (2001): Student's t with persons - 1 degrees of freedom
+  /// Standard deviation between people of the logarithm of the parameter (of the lapse itself), without the
+  /// contribution of the standard errors. Computed by restricted maximum likelihood (Viechtbauer 2005).
   std::optional<double> between_sd;
-  Interval between_sd_ci95;               ///< Q profile (Viechtbauer 2007); the lower end is 0 if it extends to 0
-  std::optional<double> heterogeneity_p;  ///< p of Cochran's Q for equal values of all persons
+  Interval between_sd_ci95;               ///< Q profile method (Viechtbauer 2007); the lower limit may be 0
+  std::optional<double> heterogeneity_p;  ///< p value of Cochran's Q test for equal values of all persons
 };
 
 /// An estimate and its standard error.
 struct PersonEstimate {
   double value = 0, se = 0;
 };
-/// Returns the random-effects estimate; the results are not transformed back.
+/// Returns the random-effects estimate. Neither the values nor the results are transformed.
 [[nodiscard]] PeopleSpread spread_over(std::span<const PersonEstimate> estimates);
 /// Returns the spread of one parameter among people.
 [[nodiscard]] PeopleSpread people_spread(std::span<const PersonFit> people, std::size_t key);

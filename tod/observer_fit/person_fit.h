@@ -15,26 +15,27 @@ namespace todbench {
 
 /// Options of fit_person().
 struct PersonFitOptions {
-  ObserverValues start{0.6, 0.07, 1, 0};  ///< starting point of the search, and values of the parameters that are not
-                                          ///< free
+  /// Starting point of the search. Parameters that are not free keep these values.
+  ObserverValues start{0.6, 0.07, 1, 0};
   std::array<bool, observer_key_count> free{};
   enum class Intervals {
-    none,  ///< no intervals, and only a few steps: for answers whose maximum is near the starting point
+    none,  ///< no intervals, and only few search steps; for answers whose maximum is near the starting point
     profile,
   } intervals = Intervals::profile;
 };
 
 /// Result of fit_person().
 struct PersonFit {
-  ObserverValues values{};  ///< by ObserverKey
+  ObserverValues values{};  ///< fitted values, by ObserverKey
   std::array<bool, observer_key_count> free{};
   /// 95 % intervals by profile likelihood (drop of 3.84 in twice ln likelihood). A side is open if the likelihood does
-  /// not decrease that far within the domain. At a natural limit (factor 1, lapse 0) the side is that limit.
+  /// not decrease so far within the domain. If the domain has a natural limit on this side (factor 1, lapse 0), the
+  /// side is this limit.
   std::array<Interval, observer_key_count> ci95{};
   /// Inverse of the expected information for ln sigma, ln n, ln f and the lapse; 0 for parameters that are not free.
-  /// Empty if it is singular: the answers do not separate the parameters.
+  /// Empty if the information is singular, because the answers do not distinguish the parameters.
   std::optional<std::array<std::array<double, observer_key_count>, observer_key_count>> covariance;
-  /// Whether a parameter is at an end of the domain.
+  /// Whether a parameter is at a limit of its domain.
   std::array<bool, observer_key_count> at_limit{};
   double log_likelihood = 0;
   std::size_t answers = 0;
@@ -42,7 +43,8 @@ struct PersonFit {
 
 /// Returns the correlation of two estimates; empty without a covariance, or if one of them is not free.
 [[nodiscard]] std::optional<double> correlation(const PersonFit& fit, std::size_t a, std::size_t b);
-/// Returns the standard error of ln of the value (of the lapse itself); empty if there is none.
+/// Returns the standard error of the logarithm of a parameter (of the lapse itself). Empty without a covariance, or if
+/// the parameter is not free.
 [[nodiscard]] std::optional<double> standard_error(const PersonFit& fit, std::size_t key);
 
 /// Fits the parameters by maximum likelihood from several starting points. Errors: `invalid_input` (no answers, no free

@@ -11,19 +11,19 @@
 
 namespace todbench {
 
-/// Probability of each alternative and its derivatives, for one patch at one place of the search.
+/// Probability of each alternative and its derivatives, for one patch and one ObserverPlace.
 struct AnswerExpansion {
   std::array<double, 4> probability{};
   std::array<std::array<double, 4>, observer_key_count> slope{};
 };
 
-/// Returns the standard deviation of the observer's own noise for a patch, relative to the contrast: sqrt(n^2 + (f^2 -
-/// 1) (q / dT)^2).
+/// Returns the standard deviation of the noise that the observer adds to a patch, relative to the contrast: sqrt(n^2 +
+/// (f^2 - 1) (q / dT)^2). n: internal noise, f: sensor-noise factor, q: noise of the sensor, dT: contrast.
 [[nodiscard]] double own_noise(const AnsweredPatch& patch, const ObserverValues& values);
 /// Returns the probabilities of the four answers to one patch: p = lapse / 4 + (1 - lapse) p_observer. The sum is 1.
 [[nodiscard]] std::array<double, 4> answer_shares(AnswerLattice& lattice, std::size_t patch,
                                                   const ObserverValues& values);
-/// Computes probabilities and derivatives at a place of the search.
+/// Computes probabilities and derivatives for one patch.
 [[nodiscard]] AnswerExpansion answer_expansion(AnswerLattice& lattice, std::size_t patch, const ObserverPlace& place);
 
 /// Returns the ln likelihood of the answers, its gradient, and, as second derivatives, minus the expected information

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plate as a picture for a display, drawn by exact area.
+// A plate as a picture for a display. The level of a pixel is computed from exact covered areas.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -12,7 +12,7 @@ namespace todbench {
 /// Pixels of a display.
 struct DisplayGeometry {
   cv::Size size_px;
-  double pixel_mm = 1;  ///< centre to centre, square
+  double pixel_mm = 1;  ///< distance between the centres of neighbouring pixels, equal along x and y
 };
 
 /// Draws a plate with the level `pattern` inside triangles and rectangles and `ground` elsewhere. A pixel has the mean

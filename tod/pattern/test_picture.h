@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Test pictures for projectors, monitors and visible cameras: known polygons, drawn by exact area.
+// Test pictures for projectors, monitors and visible cameras. They consist of known polygons; the level of a pixel is
+// computed from exact covered areas.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +17,8 @@ namespace todbench {
 /// Rows of four triangles. Each row contains each orientation once, in an order drawn from the seed; positions differ
 /// in sub-pixel phase.
 struct TodPicture {
-  std::vector<double> sizes_px;  ///< square roots of area, one row each; empty: as many as fit, in steps of 1.205
+  /// Square roots of area, one row for each size. Empty: as many sizes as fit into the picture, with a ratio of 1.205.
+  std::vector<double> sizes_px;
   std::uint64_t seed = 1;
 };
 /// Groups of four bars (length to width 7 : 1), one vertical and one horizontal group for each frequency.
@@ -27,7 +29,7 @@ struct MrtdPicture {
 struct EdgePicture {
   double angle_deg = 5;
 };
-/// A linear ramp, bright on the right; each pixel has the level at its centre, which is its mean.
+/// A linear ramp, bright on the right. Each pixel has the level at its centre, which equals the mean over the pixel.
 struct RampPicture {};
 /// A Siemens star round the middle. The wedges extend to the nearest border and have straight outer ends; the first
 /// wedge begins clockwise from the direction to the right.
@@ -48,7 +50,8 @@ struct PictureRequest {
   PictureKind kind;
 };
 
-/// Geometry of one group of bars. `x_px`, `y_px`: its middle, measured from the picture's upper left corner.
+/// Geometry of one group of bars. `x_px`, `y_px`: middle of the group, measured from the upper left corner of the
+/// picture.
 struct BarGroup {
   double frequency_per_px = 0, x_px = 0, y_px = 0;
   bool upright = true;  ///< the bars are parallel to y
@@ -57,12 +60,13 @@ struct BarGroup {
 /// A picture and the shapes in it.
 struct TestPicture {
   cv::Mat1d levels;   ///< 0 to 1
-  TargetPlate plate;  ///< of a TOD picture: one pixel is 1 mm, the origin is the middle
+  TargetPlate plate;  ///< plate of a TOD picture; one pixel is 1 mm, the origin is the middle of the picture
   std::vector<BarGroup> bars;
 };
 
-/// Draws a test picture. Errors: `invalid_input` in one sentence (a picture without room for a pattern, invalid or
-/// equal levels, a triangle that does not fit, bars or a whole star beyond half a cycle per pixel).
+/// Draws a test picture. Errors: `invalid_input` (a picture that is too small for the pattern, invalid or equal levels,
+/// a triangle that does not fit, bars above half a cycle per pixel, or a star that is above half a cycle per pixel
+/// everywhere).
 [[nodiscard]] Result<TestPicture> drawn_picture(const PictureRequest& request);
 
 /// Returns the radius in pixels below which the spokes have more than half a cycle per pixel (Nyquist).

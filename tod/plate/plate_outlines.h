@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Outlines of a plate's triangles in the picture, and number formatting, for registration, shift and contrast.
+// Outlines of a plate's triangles in the picture, and formatting of numbers. Used for registration, shift and contrast.
 #pragma once
 
 #include <fmt/format.h>

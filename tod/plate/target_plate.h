@@ -24,7 +24,7 @@ struct PlateTriangle {
 /// A cut-out for measures other than TOD: an edge or a bar.
 struct PlateRectangle {
   std::string name;         ///< unique on the plate
-  cv::Point2d position_mm;  ///< position of its middle, as for a triangle
+  cv::Point2d position_mm;  ///< position of the middle, relative to the middle of the plate as for a triangle
   cv::Size2d size_mm;       ///< before rotation
   double angle_deg = 0;     ///< clockwise rotation
 };
@@ -40,22 +40,23 @@ struct PlateBars {
   double angle_deg = 0;     ///< clockwise angle from x to the direction across the bars
 };
 
-/// Orientation in which the plate is held. A mounting permutes places *and* apex labels, which cancels effects of
-/// memory and asymmetry.
+/// Orientation in which the plate is held. A mounting exchanges positions *and* directions of the triangles. Effects of
+/// memory and of asymmetry therefore cancel.
 enum class Mounting { identity, rotated_180, mirrored_horizontally, mirrored_vertically };
 inline constexpr std::array all_mountings{Mounting::identity, Mounting::rotated_180, Mounting::mirrored_horizontally,
                                           Mounting::mirrored_vertically};
 [[nodiscard]] std::string_view to_string(Mounting mounting);
 [[nodiscard]] std::optional<Mounting> mounting_from(std::string_view name);
 
-/// A plate according to its drawing. The truth about every triangle comes from here, never from the image.
+/// A plate according to its drawing. The true direction of every triangle is always that of the drawing and is never
+/// determined from the image.
 struct TargetPlate {
   std::string name;
   std::string description;
   double width_mm = 0, height_mm = 0;
   std::vector<PlateTriangle> triangles;
-  Mounting mounting = Mounting::identity;    ///< mounting of the stated places and apexes; set by mounted(), never by a
-                                             ///< file
+  /// Mounting to which the positions and apexes belong. Set by mounted(), never by a file.
+  Mounting mounting = Mounting::identity;
   std::vector<PlateRectangle> rectangles{};  ///< not used in trials
   std::vector<PlateBars> bars{};             ///< not used in trials
 };
@@ -64,14 +65,15 @@ struct TargetPlate {
 [[nodiscard]] std::vector<PlateRectangle> straight_cut_outs(const TargetPlate& plate);
 
 /// Checks a plate. Errors: `invalid_input` (an empty plate, a size that is not positive, a repeated name, or a cut-out
-/// that leaves the plate or touches another).
+/// that is partly outside the plate or touches another cut-out).
 [[nodiscard]] Result<void> validate(const TargetPlate& plate);
 
-/// Returns the mounting that results from both, in either order (Klein four-group: each mounting is its own inverse).
+/// Returns the mounting that results from both mountings. Their order does not matter, and each mounting is its own
+/// inverse (Klein four-group).
 [[nodiscard]] Mounting combined(Mounting first, Mounting second);
 
-/// Returns the plate as the camera sees it in a mounting: places and apexes transformed, names unchanged, `mounting`
-/// combined.
+/// Returns the plate as the camera sees it in a mounting. Positions and apexes are transformed, `mounting` is combined
+/// with the present one, and names are not changed.
 [[nodiscard]] TargetPlate mounted(const TargetPlate& plate, Mounting mounting);
 [[nodiscard]] Apex mounted(Apex apex, Mounting mounting);
 

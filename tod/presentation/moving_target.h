@@ -29,8 +29,8 @@ class MovingTarget {
   virtual ~MovingTarget() = default;
   /// Returns the lowest and highest speed of a run.
   [[nodiscard]] virtual Result<std::array<double, 2>> run_speeds_mm_s(std::stop_token stop) = 0;
-  /// Starts a run along x from the place of the presented state. Returns once the stage reports that the run has begun.
-  /// The next present() ends the run. Errors: `invalid_input` (outside the stage's range), `disconnected`,
+  /// Starts a run along x from the position of the presented state. Returns once the stage reports that the run has
+  /// begun. The next present() ends the run. Errors: `invalid_input` (outside the stage's range), `disconnected`,
   /// `interrupted`.
   [[nodiscard]] virtual Result<PlateRun> run_along_x(double to_mm, double speed_mm_s, std::stop_token stop) = 0;
 };

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps by which an operator sets the target to a state, with their values. The user interface formulates the
-// sentences.
+// Steps by which an operator sets the target to a state, with their values. The user interface writes the sentences.
 #pragma once
 
 #include <functional>
@@ -37,7 +36,7 @@ struct SetContrast {
 
 /// Step: move the plate by about this distance. The actual distance is measured.
 struct MoveSlightly {
-  cv::Point2d by_mm;  ///< as the camera sees the plate, x right, y down
+  cv::Point2d by_mm;  ///< shift as the camera sees the plate, x right, y down
   bool operator==(const MoveSlightly&) const = default;
 };
 
@@ -47,7 +46,7 @@ struct MoveHotBar {
   bool operator==(const MoveHotBar&) const = default;
 };
 
-/// Notice that the picture contradicts the last request, whose steps follow again.
+/// Notice that the picture contradicts the last request. The steps of this request follow again.
 struct CheckAgain {
   std::string reason;
   bool operator==(const CheckAgain&) const = default;
@@ -69,8 +68,8 @@ enum class OperatorAnswer { done, stop };
 /// (at once when stop is requested), `disconnected` (the operator can no longer answer).
 using AskOperator = std::function<Result<OperatorAnswer>(const OperatorRequest& request, const std::stop_token& stop)>;
 
-/// Returns the differences between two states; without a last state, plate and contrast are requested. A move is
-/// requested only if no other change is needed, because touching the plate moves it.
+/// Returns the steps from one state to the next. Without a last state, plate and contrast are requested. A move is
+/// requested only if no other step is needed, because handling the plate moves it anyway.
 [[nodiscard]] OperatorRequest request_between(const std::optional<TargetState>& last, const TargetState& next);
 
 /// Returns the step as a request, without initial capital and full stop: "set the black body to +2.000 K against the

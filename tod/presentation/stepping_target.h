@@ -8,8 +8,8 @@
 
 namespace todbench {
 
-/// Additional interface of a Target whose steps begin on command and are instantaneous. A target without it makes the
-/// step in present(), which returns after settling. Use it only from the thread of the Target.
+/// Additional interface of a Target whose steps begin on command and are instantaneous. Other targets make the step in
+/// present(), which returns after settling. Use it only from the thread of the Target.
 class SteppingTarget {
  public:
   virtual ~SteppingTarget() = default;

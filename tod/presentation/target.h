@@ -15,12 +15,14 @@
 
 namespace todbench {
 
-/// Contrast for which a target waits before a presentation.
+/// State of the contrast for which a target waits before a presentation.
 enum class ContrastWait {
-  settled,      ///< reached and stable
-  held,         ///< reached, stable, and measured in the frames: the reference for a contrast that changes
-  within_band,  ///< within the settling band of the set-point and changing slowly; measured in the frames
-  none,         ///< still changing; measured in the frames
+  settled,  ///< reached and stable
+  /// Reached and stable, and measured in the frames of the presentation; reference for a contrast that changes.
+  held,
+  /// Within the settling band of the set-point and changing slowly; measured in the frames of the presentation.
+  within_band,
+  none,  ///< still changing; measured in the frames of the presentation
 };
 
 /// State to be shown.
@@ -29,7 +31,8 @@ struct TargetState {
   Mounting mounting = Mounting::identity;
   double delta_t_k = 0;        ///< set-point of triangle minus surround; the sign is the polarity
   cv::Point2d shift_mm{0, 0};  ///< shift of the plate in its own plane, as the camera sees it, x right, y down
-  /// Contrast to wait for. If it is not `settled`, each presentation has the contrast measured in its own frames.
+  /// State of the contrast to wait for. If it is not `settled`, the contrast of each presentation is measured in its
+  /// own frames.
   ContrastWait wait = ContrastWait::settled;
   /// Set contrast of the point of the curve to which the answers belong; empty: `delta_t_k`.
   std::optional<double> point_delta_t_k{};
@@ -38,7 +41,7 @@ struct TargetState {
 
 /// State that an instrument reports once it is stable.
 struct PresentedTarget {
-  TargetState state;                               ///< as reached
+  TargetState state;                               ///< state that was reached
   std::optional<double> plate_temperature_k;       ///< temperature of the surround, if a sensor reports it
   std::optional<double> black_body_temperature_k;  ///< temperature behind the cut-outs
   double settling_s = 0;                           ///< time spent waiting
@@ -61,9 +64,9 @@ class Target {
   /// a second). Errors: `timeout` (does not settle), `disconnected`, `not_found`, `invalid_input` (a state that it
   /// cannot show).
   [[nodiscard]] virtual Result<PresentedTarget> present(const TargetState& state, std::stop_token stop) = 0;
-  /// Called with the reason if the frames contradict the last report of present(). Returns true if present() requests
-  /// the state again, because manual changes can fail; the same presentation is then repeated. Returns false if the
-  /// contradiction ends the run.
+  /// Called if the frames contradict the last result of present(). `reason`: description of the contradiction. Returns
+  /// true if the presentation is to be repeated: present() then requests the state again. This is useful for manual
+  /// changes, which can fail. Returns false if the contradiction ends the run.
   [[nodiscard]] virtual bool asks_again(const std::string& /*reason*/) { return false; }
   /// Returns the same target if it can run, otherwise null. The pointer is valid as long as the target.
   [[nodiscard]] virtual MovingTarget* moving() { return nullptr; }

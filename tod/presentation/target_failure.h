@@ -8,10 +8,10 @@
 
 namespace todbench {
 
-/// Subject of a failure of the target. Keys of the plan's section [target] begin with the same word.
+/// Subject of a failure of the target. The keys of section [target] of the plan begin with this word.
 inline constexpr std::string_view target_subject = "target";
 
-/// Returns the failing side "DOING: CAUSE" with the target as its subject, unless the cause has another subject.
+/// Returns the error "DOING: CAUSE". Its subject is the target, unless the cause has another subject.
 [[nodiscard]] inline tl::unexpected<Error> target_failure(std::string_view doing, const Error& cause) {
   Error error = with_context(doing, cause);
   if (!error.key) error.key = ErrorKey{std::string(target_subject), cause.message};

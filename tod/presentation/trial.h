@@ -14,15 +14,15 @@ namespace todbench {
 
 /// Recorded content of an answer.
 enum class AnswerKind {
-  binary,  ///< correct or wrong
-  graded,  ///< also the probability of the correct answer to the patch
+  binary,  ///< only the answer, which is correct or wrong
+  graded,  ///< the answer, and the probability of the correct answer to the patch
 };
 inline constexpr std::array all_answer_kinds{AnswerKind::binary, AnswerKind::graded};
 [[nodiscard]] constexpr std::string_view to_string(AnswerKind kind) {
   return kind == AnswerKind::binary ? "binary" : "graded";
 }
 
-/// A position in the camera's picture, in pixels from the centre of the first one.
+/// A position in the camera's picture, in pixels from the centre of the first pixel.
 struct PlaceInPicture {
   double x_px = 0, y_px = 0;
   bool operator==(const PlaceInPicture&) const = default;
@@ -43,15 +43,18 @@ struct Trial {
   Apex answer = Apex::up;
   std::array<double, 4> scores{};
   double phase_x_px = 0, phase_y_px = 0;  ///< centroid minus window centre, in [-0.5, 0.5)
-  std::uint64_t frame = 0;                ///< sequence number; of the first frame if there are several
+  std::uint64_t frame = 0;                ///< sequence number of the (first) frame
   std::int64_t device_time_ns = 0;
   std::int64_t host_time_ns = 0;
-  double since_nuc_s = -1;   ///< time since the last known non-uniformity correction; < 0: none known
-  int saturated_pixels = 0;  ///< in the window, at either end of the counts, without defective pixels
-  /// Probability of the correct answer to the patch, over the observer's own noise, averaged over the frames. Empty:
-  /// the observer returns only the answer.
+  double since_nuc_s = -1;  ///< time since the last known non-uniformity correction; < 0: none known
+  /// Number of pixels in the window with the lowest or the highest count, without defective pixels.
+  int saturated_pixels = 0;
+  /// Probability of the correct answer to the patch, averaged over the internal noise of the observer and over the
+  /// frames. Empty: the observer returns only the answer.
   std::optional<double> probability_correct{};
-  int frames = 1;  ///< successive accepted frames for probability_correct; the answer refers to the first frame
+  /// Number of successive accepted frames over which probability_correct is averaged; `answer` is that to the first
+  /// frame.
+  int frames = 1;
   std::optional<PlaceInPicture> centroid{};  ///< centroid of the triangle; empty: not stated, as in earlier versions
 
   [[nodiscard]] bool correct() const { return truth == answer; }

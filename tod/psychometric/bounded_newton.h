@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Value, gradient and second derivatives at a place.
+/// Value, gradient and second derivatives of a function at one point.
 template <std::size_t N>
 struct Expansion {
   double value = -std::numeric_limits<double>::infinity();
@@ -74,7 +74,7 @@ template <std::size_t N>
   return y;
 }
 
-/// Returns which variables may move from `place`.
+/// Returns which variables are free: not fixed, and not at a limit with the gradient pointing outwards.
 template <std::size_t N>
 [[nodiscard]] std::array<bool, N> free_variables(const std::array<double, N>& place,
                                                  const std::array<double, N>& gradient, const ParameterBox<N>& box) {
@@ -100,10 +100,11 @@ template <std::size_t N>
   return true;
 }
 
-/// Climbs from `start` (Levenberg-Marquardt damping; an active limit is released when the gradient points inwards).
-/// Once the gain of a step is below the rounding error of the value, steps are accepted as long as they reduce the
-/// gradient. The place is therefore exact to the rounding error of the gradient, not of the value. Ends if no step
-/// improves the result. A start without finite derivatives is returned unchanged.
+/// Finds a maximum by Newton steps from `start`, with Levenberg-Marquardt damping. A variable at a limit is released
+/// when the gradient points inwards. When the gain of a step is below the rounding error of the value, steps are
+/// accepted if they reduce the gradient. The accuracy of the maximum is therefore limited by the rounding error of the
+/// gradient, not by that of the value. The search ends if no step improves the result. If the derivatives at `start`
+/// are not finite, `start` is returned unchanged.
 template <std::size_t N, typename Function>
 [[nodiscard]] Maximum<N> climb(const Function& function, std::array<double, N> start, const ParameterBox<N>& box) {
   for (std::size_t i = 0; i < N; ++i) start[i] = std::clamp(start[i], box.lower[i], box.upper[i]);

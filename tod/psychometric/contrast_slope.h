@@ -13,19 +13,20 @@ namespace todbench {
 /// Standard error of a measured contrast.
 struct ContrastError {
   double standard_error_k = 0;
-  double shared_k = 0;  ///< part of it due to errors common to one place, which the scatter over set-ups does not
-                        ///< contain
+  /// Part of standard_error_k due to errors common to one position. The scatter over set-ups does not contain this
+  /// part.
+  double shared_k = 0;
   double degrees_of_freedom = 1;
   double noise_k = 0;  ///< standard error due to the noise of the pixels alone; 0: not known
 };
 
-/// Returns the error of a contrast that reports state and schedules use. It is the given error or the error due to the
-/// noise of the pixels, whichever has the longer 95 % interval, because the scatter over a few set-ups may be small by
+/// Returns the error of a contrast for reports and schedules. It is the given error or the error due to the noise of
+/// the pixels, whichever has the wider 95 % interval. The reason is that the scatter over a few set-ups may be small by
 /// chance.
 [[nodiscard]] ContrastError at_least_the_noise(ContrastError error);
 
-/// Sets the standard errors of the contrasts in the points of a curve, by set contrast. A point without an entry keeps
-/// its own error.
+/// Sets the standard errors of the contrasts in the points of a curve, by set contrast. A point without an entry is not
+/// changed.
 void set_contrast_errors(TodCurve& curve, const std::map<double, ContrastError>& errors);
 
 /// Returns the magnitude of the effective contrast, or of the set contrast if the effective one is not known.
@@ -40,9 +41,9 @@ void set_contrast_errors(TodCurve& curve, const std::map<double, ContrastError>&
 [[nodiscard]] std::optional<double> freedom_of_contrast(const TodPoint& point);
 
 /// Returns for each point the magnitude of the slope of ln acuity as a function of ln |effective contrast|. The slope
-/// comes from S75^2 = A + B / C + D / C^2 through the point and its neighbours of the same sign (C: contrast; A:
+/// is that of S75^2 = A + B / C + D / C^2 through the point and its neighbours of the same sign (C: contrast; A:
 /// resolution; B, D: noise). With two points it is the larger of the slopes of A + B / C and A + D / C^2. If no
-/// neighbour has a threshold, the slope is 1: acuity proportional to the contrast.
+/// neighbour has a threshold, the slope is 1, as for an acuity proportional to the contrast.
 [[nodiscard]] std::vector<double> contrast_slopes(const TodCurve& curve);
 
 /// Smallest value of d ln S75 / d ln contrast, from measurements.
@@ -55,7 +56,7 @@ inline constexpr double measured_contrast_slope = 1.14;
 /// Uncertainty of the acuity from the scatter of the measurements of a contrast.
 struct ContrastScatter {
   double se_ln_acuity = 0;                     ///< 0 if the scatter is not known
-  double shared_se_ln_acuity = 0;              ///< part of it that the scatter over set-ups does not contain
+  double shared_se_ln_acuity = 0;              ///< part of se_ln_acuity that the scatter over set-ups does not contain
   std::optional<double> degrees_of_freedom{};  ///< empty: not stated
 };
 /// Returns for each point the standard error of the contrast times contrast_effects().
@@ -65,11 +66,11 @@ struct ContrastScatter {
 /// Student's t with these degrees of freedom.
 void join_uncertainty(PsychometricFit& fit, double u, std::optional<double> degrees_of_freedom);
 
-/// Adds the scatter of the effective contrast as an uncertainty of S75. The answers were scored with the effective
-/// contrast, and the size is stated at that contrast. Let w be the share of the observer's own noise, and d ln S75 / d
-/// ln SNR = -k. A relative error of the contrast changes ln S75 by k w through the score, and by k (1 - w) through the
-/// stated contrast, which is k in total for every w. k is 1.14 according to measurements, or the slope of the curve if
-/// that is larger.
+/// Adds the scatter of the effective contrast as an uncertainty of S75. The effective contrast is used for the scores,
+/// and S75 is stated at this contrast. Let w be the share of the internal noise of the observer, and d ln S75 / d ln
+/// SNR = -k. A relative error of the contrast changes ln S75 by k w because of the scores, and by k (1 - w) because of
+/// the stated contrast. The sum is k for every w. k is the measured value of 1.14, or the slope of the curve if that is
+/// larger.
 void join_contrast_errors(TodCurve& curve);
 
 }  // namespace todbench

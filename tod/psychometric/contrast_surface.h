@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Proportion correct of a simulated sensor as a function of size and contrast, from tables at a few contrasts.
+// Proportion correct of a simulated sensor as a function of size and contrast, interpolated between tables at a few
+// contrasts.
 #pragma once
 
 #include <memory>
@@ -10,15 +11,15 @@
 
 namespace todbench {
 
-/// Sources of noise that determine how the function changes with the contrast.
+/// Noise that determines how the function changes with the contrast.
 struct ContrastNoise {
   double noise_k = 0;         ///< temporal noise of a pixel
   double internal_noise = 0;  ///< internal noise of the observer, relative to the contrast; 0: 0.07 as in hvs-1
 };
 
-/// Returns the position u of a contrast on the curve: u = ln(hypot(noise_k / |dT|, n) / n) / ln 5, where n is the
-/// internal noise. u is 0 if the observer's own noise dominates; it is 1 at about a fifth of the contrast at which both
-/// noises are equal. The function of a sensor depends on the contrast only through u if the counts are fine enough.
+/// Returns the coordinate u of a contrast: u = ln(hypot(noise_k / |dT|, n) / n) / ln 5, where n is the internal noise.
+/// u is 0 if the internal noise of the observer dominates. It is 1 at about a fifth of the contrast at which internal
+/// noise and sensor noise are equal. If the counts are fine enough, contrasts with the same u have the same function.
 [[nodiscard]] double contrast_bend(const ContrastNoise& noise, double delta_t_k);
 /// Returns contrasts, decreasing from `strongest_k` to `weakest_k`, at which tables describe the function. The steps
 /// are at most 0.1 in u.
@@ -38,12 +39,13 @@ class ContrastSurface {
   /// TwinShape::of().
   [[nodiscard]] static Result<ContrastSurface> of(std::span<const TableAtContrast> tables, const ContrastNoise& noise);
 
-  /// Returns ln of the size at 75 %: cubic in u between the contrasts of the tables, constant beyond the strongest one.
+  /// Returns ln of the size at 75 %. It is cubic in u between the contrasts of the tables, and constant above the
+  /// strongest contrast.
   [[nodiscard]] double ln_threshold(double delta_t_k) const;
   /// Returns the slope of ln_threshold() per unit of ln contrast, from contrasts 1 % above and below.
   [[nodiscard]] double slope(double delta_t_k) const;
-  /// Returns the value at ln(size / mrad), from the functions of the neighbouring tables, shifted to the same
-  /// threshold.
+  /// Returns the value at ln(size / mrad). It is interpolated between the functions of the neighbouring tables, shifted
+  /// to the same threshold.
   [[nodiscard]] TwinShape::Value at(double ln_size, double delta_t_k) const;
   [[nodiscard]] const ContrastNoise& noise() const { return noise_; }
   /// Returns the standard error of ln_threshold(), from the nearest table.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Findings against a result, with their figures, as values.
+// Findings against a result, with their values and limits.
 #pragma once
 
 #include <algorithm>
@@ -11,28 +11,28 @@
 
 namespace todbench {
 
-/// Subject of a finding, with the meaning of its value and its limit.
+/// Subject of a finding. Each comment states the subject, followed by the meaning of value and limit.
 enum class FindingKind {
-  deviance,              ///< shape of the answers relative to the model; standard deviations, in the stated direction
+  deviance,              ///< shape of the answers differs from the model; standard deviations in the stated direction
   lapse,                 ///< a free lapse explains the answers better; 2 ln likelihood ratio, corrected for clusters
   overdispersion,        ///< answers scatter more than chance; ratio of variances
   underdispersion,       ///< answers scatter less than chance; ratio of variances
   extrapolation,         ///< threshold outside the tested sizes; size, nearest tested size
-  slope,                 ///< slope at an end of its domain; slope, this end
-  direct_estimate,       ///< fit compared with the estimate without trials; difference in percent, joint tolerance
+  slope,                 ///< slope at a limit of its domain; slope, this limit
+  direct_estimate,       ///< fit differs from the estimate without trials; difference in percent, tolerance for both
   clipping,              ///< saturated pixels in windows of triangles; share of trials
   rounding,              ///< a count is wider than the noise; standard deviation of the noise in counts
   temporal_correlation,  ///< successive frames share noise; correlation
-  surrogate,             ///< pictures that the optics model of the twin cannot produce; chi-square, its limit
+  surrogate,             ///< the optics model of the twin does not describe the pictures; chi-square, its limit
   identity,  ///< curves of different plates, of the same answers, or fitted with different functions; no figures
   contrast_deviation,  ///< effective contrast differs from the set contrast; percent, tolerance of the budget
-  transfer_change,     ///< set-ups of one run differ in contrast; percent, tolerance by their errors
+  transfer_change,     ///< set-ups of one run differ in contrast; percent, tolerance due to their errors
   noise_change,        ///< the noise of a pixel changed during the run; percent, tolerance
   correlation_change,  ///< the correlation of successive frames changed during the run; difference of correlations
   picture_residue,     ///< pictures still changed during their measurement; percent of the change
   setting_change,      ///< a setting of the camera changed during the run; no figures
-  orientation,         ///< thresholds of triangles that point up or down and left or right differ; percent, limit
-  ramp_direction,      ///< S75 of ramps up and down differ; percent, limit
+  orientation,         ///< thresholds for up and down differ from those for left and right; percent, limit
+  ramp_direction,      ///< S75 differs between ramps up and down; percent, limit
   contrast_lag,        ///< small triangles lag large ones in a ramp by more than stated; seconds, stated seconds
 };
 inline constexpr std::array all_finding_kinds{FindingKind::deviance,           FindingKind::lapse,
@@ -53,7 +53,7 @@ struct AdequacyFinding {
   FindingKind kind = FindingKind::deviance;
   std::optional<double> value{};  ///< observed value
   std::optional<double> limit{};  ///< limit beyond which the value is a finding
-  std::string sentence{};         ///< without a full stop
+  std::string sentence{};         ///< sentence for reports, without a full stop
   bool unfit = false;             ///< the result must not be used for a decision
   bool operator==(const AdequacyFinding&) const = default;
 };

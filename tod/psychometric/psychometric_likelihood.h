@@ -20,7 +20,8 @@ struct PooledLevel {
   [[nodiscard]] double total() const { return right + wrong; }
 };
 
-/// All data of the likelihood. Equal sizes are pooled, sorted, and relative to a central size, so that units cancel.
+/// All data of the likelihood. Equal sizes are pooled. Sizes are sorted and relative to a central size, so the unit has
+/// no effect.
 struct PooledCounts {
   std::vector<PooledLevel> levels;          ///< positive sizes, increasing, total > 0
   double blank_right = 0, blank_wrong = 0;  ///< size 0 (no triangle): psi = chance
@@ -35,8 +36,9 @@ struct PooledCounts {
   [[nodiscard]] std::optional<double> size_at(double ln_size) const;
 };
 
-/// Maximum number of trials of one fit. The likelihood of n trials is about n, so its rounding error is 2e-16 n. The
-/// drop of 3.84 that defines an interval has a relative error below 2e-4 for 1e12 trials, and of a fifth for 1e15.
+/// Maximum number of trials of one fit. The ln likelihood of n trials is about n, so its rounding error is 2e-16 n. For
+/// 1e12 trials, the relative error of the drop of 3.84 that defines an interval is below 2e-4; for 1e15 trials it is a
+/// fifth.
 inline constexpr double most_trials = 1e12;
 
 /// Whether counts of correct answers are integers or sums of probabilities.
@@ -51,8 +53,8 @@ enum class Counts { whole, fractional };
 /// Pools two sets, with sizes relative to the reference of the first.
 [[nodiscard]] PooledCounts pool(const PooledCounts& a, const PooledCounts& b);
 
-/// Merges neighbouring levels so that at most `most_levels` remain. Each is at the mean of its ln sizes, weighted by
-/// trials. Spans of ln size are equal: levels further apart than a span stay separate.
+/// Merges neighbouring levels so that at most `most_levels` remain. Levels within one span of ln size are merged; all
+/// spans have the same length. The ln size of a merged level is the mean over its levels, weighted by trials.
 [[nodiscard]] PooledCounts grouped(const PooledCounts& counts, std::size_t most_levels);
 
 /// Model parameters of the search: t = ln(threshold / reference size), q = ln slope, lapse.
@@ -72,30 +74,32 @@ struct Scores {
 /// Returns the scores at a relative ln size.
 [[nodiscard]] Scores scores_at(PsychometricForm form, const PsychometricPlace& place, double ln_size);
 
-/// Returns the deviance of the model relative to one free probability per level. It is summed level by level, so that
-/// large counts do not cancel.
+/// Returns the deviance of the model relative to one free probability per level. It is summed level by level to avoid
+/// the loss of digits for large counts.
 [[nodiscard]] double deviance(const PooledCounts& counts, PsychometricForm form, const PsychometricPlace& place);
 /// Returns the ln likelihood with one free probability per level (the blank level included).
 [[nodiscard]] double saturated(const PooledCounts& counts);
 
-/// Limits of the likelihood at the edges of the model (Prins 2019). If one of them is the supremum, there is no
+/// ln likelihood in the limiting cases of the model (Prins 2019). If one of these values is the supremum, there is no
 /// maximum.
 struct LikelihoodLimits {
   double chance = 0;   ///< threshold -> infinity: psi = g everywhere
   double ceiling = 0;  ///< threshold -> 0: psi = 1 - lapse at every positive size; -infinity with an error at lapse 0
-  double ceiling_lapse = 0;  ///< lapse at that limit
-  double step = 0;           ///< slope -> infinity: chance below, 1 - lapse above, any value between them at one level
+  double ceiling_lapse = 0;  ///< lapse for `ceiling`
+  /// Slope -> infinity: chance level at smaller sizes, 1 - lapse at larger sizes, and any value between these at one
+  /// size.
+  double step = 0;
 };
-/// Thresholds (relative ln size) of all ideal steps whose ln likelihood is at least `least`. An ideal step is at chance
-/// level below the threshold and at 1 - lapse above it. A threshold between two levels includes their whole gap. A side
-/// without a value is unbounded.
+/// Range of the thresholds (relative ln size) of all ideal steps whose ln likelihood is at least `least`. An ideal step
+/// is at chance level below the threshold and at 1 - lapse above the threshold. If a threshold between two levels is
+/// included, the whole gap between these levels is included. A side without a value is unbounded.
 struct StepExtent {
   bool any = false;
   std::optional<double> low, high;
 };
-/// Finds the steps. `lapse` as in likelihood_limits().
+/// Finds this range. `lapse` as in likelihood_limits().
 [[nodiscard]] StepExtent step_extent(const PooledCounts& counts, std::optional<double> lapse, double least);
-/// Computes the limits. `lapse`: fixed, or free in [0, 0.1] if not given.
+/// Computes these limits. `lapse`: fixed lapse; empty: free in [0, 0.1].
 [[nodiscard]] LikelihoodLimits likelihood_limits(const PooledCounts& counts, std::optional<double> lapse);
 
 }  // namespace todbench

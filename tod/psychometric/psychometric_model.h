@@ -11,9 +11,9 @@ inline constexpr double min_slope = 0.1;      ///< domain of the slope b
 inline constexpr double max_slope = 50;
 inline constexpr double max_free_lapse = 0.1;  ///< domain of a free lapse
 
-/// A form of the function at one lapse. psi = g + A H and 1 - psi = l + A (1 - H) with g = chance level, A = 1 - g - l
-/// and H = 1 - exp(-z) (size form) or exp(-z) (acuity form), z = kappa exp(u), u = +-b (ln x - ln x75); kappa(l) makes
-/// psi(x75) = 0.75.
+/// A form of the function at one lapse. psi = g + A H and 1 - psi = l + A (1 - H) with g = chance level, l = lapse and
+/// A = 1 - g - l. H is 1 - exp(-z) (size form) or exp(-z) (acuity form), where z = kappa exp(u) and u = +-b (ln x - ln
+/// x75). kappa(l) is chosen so that psi(x75) = 0.75.
 struct Link {
   PsychometricForm form = PsychometricForm::size;
   double lapse = 0;
@@ -22,7 +22,7 @@ struct Link {
   double ln_kappa = 0;
   double d_ln_kappa = 0;   ///< first derivative of ln kappa with respect to the lapse
   double d2_ln_kappa = 0;  ///< second derivative
-  double sign = 1;         ///< of u: +1 size, -1 acuity
+  double sign = 1;         ///< sign of u: +1 for the size form, -1 for the acuity form
 };
 /// Creates a link. Precondition: `lapse` in [0, 0.1].
 [[nodiscard]] Link make_link(PsychometricForm form, double lapse);
@@ -31,8 +31,8 @@ struct Link {
 struct LogProbabilities {
   double right = 0, wrong = 0;
 };
-/// Computes both at u without rounding psi to 1: ln(1 - psi) is exact down to the largest double. Arguments above 700
-/// are replaced by 700.
+/// Computes both logarithms at u without rounding psi to 1, so ln(1 - psi) is also accurate if psi is very close to 1.
+/// Arguments above 700 are replaced by 700.
 [[nodiscard]] LogProbabilities log_probabilities(const Link& link, double u);
 
 /// Value and partial derivatives of ln psi or ln(1 - psi) in w = ln z and in the lapse at constant w.

@@ -11,15 +11,16 @@ namespace todbench {
 
 /// Starting point and drops of a profile.
 struct ProfileRequest {
-  double start_t = 0;          ///< the maximum, or any place in the supremum region
+  double start_t = 0;          ///< threshold of the maximum, or any threshold in the region of the supremum
   double supremum = 0;         ///< supremum of the log-likelihood
   std::optional<double> se_t;  ///< standard error of t, for the first steps
-  LikelihoodLimits limits;     ///< determine in advance whether a side has a crossing
-  double wide_drop = 0;        ///< 2 (supremum - profile) at the outer crossing
-  double narrow_drop = 0;      ///< at the inner crossing, <= wide_drop
+  /// Limits of the likelihood, which determine in advance whether there is a crossing on a side.
+  LikelihoodLimits limits;
+  double wide_drop = 0;    ///< 2 (supremum - profile) at the outer crossing
+  double narrow_drop = 0;  ///< 2 (supremum - profile) at the inner crossing, <= wide_drop
 };
 
-/// Crossings in t, nearest to the start on each side; empty if the likelihood never decreases that far.
+/// Crossings in t that are nearest to the start on each side. Empty if the likelihood never decreases by the drop.
 struct ProfileCrossings {
   struct Side {
     std::optional<double> wide, narrow;

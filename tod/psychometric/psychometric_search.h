@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Global maximum of the likelihood: a scan of the whole domain, then Newton steps from every promising place.
+// Global maximum of the likelihood: a scan of the whole domain, followed by Newton steps from the best scanned points.
 #pragma once
 
 #include <memory>
@@ -11,13 +11,16 @@
 
 namespace todbench {
 
-/// ln psi and ln(1 - psi) of one link as piecewise quintics in u (Hermite, step 1/16). They are accurate to 1e-7 and
-/// several times faster than the functions themselves. For scans and integrals, never for a reported likelihood.
+/// Table of ln psi and ln(1 - psi) of one link: piecewise polynomials of degree five in u (Hermite, step 1/16). The
+/// error is below 1e-7. A table value takes a fraction of the time of the functions themselves. Use the table for scans
+/// and integrals, never for a reported likelihood.
 class LinkTable {
  public:
+  /// Computes the table of a link.
   explicit LinkTable(const Link& link);
+  /// Returns the link.
   [[nodiscard]] const Link& link() const { return link_; }
-  /// Returns the ln likelihood of the positive levels (blank trials add a constant).
+  /// Returns the ln likelihood of the positive levels. Blank trials are omitted, because they add only a constant.
   [[nodiscard]] double log_likelihood(const PooledCounts& counts, double t, double slope) const;
 
  private:
@@ -26,19 +29,20 @@ class LinkTable {
   Link link_;
   LogProbabilities low_, high_;  ///< values outside the table
   std::size_t cells_;
-  std::vector<double> right_, wrong_;  ///< six coefficients of (u - left edge) / step for each cell
+  std::vector<double> right_, wrong_;  ///< six coefficients for each cell; the variable is (u - left edge) / step
 
   friend class CountsTable;
 };
 
-/// The ln likelihood of one set of counts with one link. One polynomial combines correct and wrong answers of a level,
-/// so each value needs a third of the work of LinkTable. The construction (1 us per level) pays off from some hundred
-/// values. Refers to both arguments, which must outlive it.
+/// Table of the ln likelihood of one set of counts with one link. One polynomial combines the correct and the wrong
+/// answers of a level, so a value takes a third of the time of LinkTable. Construction takes 1 us per level; use this
+/// table for several hundred values or more.
 class CountsTable {
  public:
+  /// Computes the table. The arguments must outlive the object.
   CountsTable(const LinkTable& table, const PooledCounts& counts);
-  /// Returns the ln likelihood of the positive levels, as LinkTable::log_likelihood, at increasing thresholds `ts` and
-  /// one slope.
+  /// Returns the ln likelihood of the positive levels at the thresholds `ts`, which increase, and one slope. The values
+  /// are those of LinkTable::log_likelihood().
   [[nodiscard]] std::vector<double> log_likelihoods(std::span<const double> ts, double slope) const;
 
  private:
@@ -47,38 +51,45 @@ class CountsTable {
   std::unique_ptr<double[]> coefficients_;  ///< [level][cell][power]
 };
 
-/// Returns the search range in (t, q, lapse). A fixed lapse has equal limits.
+/// Returns the limits of the search in (t, q, lapse). A fixed lapse has equal lower and upper limits.
 [[nodiscard]] ParameterBox<3> search_box(std::optional<double> lapse);
 
-/// Slopes and lapses of the scans.
+/// Slopes and lapses at which the likelihood is scanned.
 struct ScanGrid {
+  /// ln slope, as in PsychometricPlace.
   std::vector<double> q;
-  std::vector<LinkTable> tables;  ///< one for each lapse
+  /// One table for each lapse.
+  std::vector<LinkTable> tables;
 };
 /// Returns the grid for a fixed lapse, or for a free lapse if `lapse` is empty.
 [[nodiscard]] ScanGrid scan_grid(PsychometricForm form, std::optional<double> lapse);
 
-/// A scanned place with its tabulated likelihood.
+/// A point of the scan.
 struct ScanNode {
+  /// Parameters t, q and lapse.
   PsychometricPlace place{};
+  /// ln likelihood from the table.
   double value = 0;
 };
-/// Result of a scan of the whole domain.
+/// Result of scan_likelihood().
 struct LikelihoodScan {
-  std::vector<ScanNode> nodes;  ///< for each slope of the grid the best place over threshold and lapse
-  std::vector<ScanNode> peaks;  ///< maxima over threshold and slope: further starting points for Newton steps
+  /// For each slope of the grid, the point with the highest likelihood over threshold and lapse.
+  std::vector<ScanNode> nodes;
+  /// Local maxima over threshold and slope, as further starting points of Newton steps.
+  std::vector<ScanNode> peaks;
 };
-/// Scans the whole domain. Thresholds are spaced by the width of the function at that slope. They lie around every
-/// level, in every gap and outside the ends, so that no step between two levels and no ridge outside them is missed.
+/// Scans the whole domain. The spacing of the thresholds is a fixed part of the width of the function at each slope.
+/// Thresholds are placed around every level, between neighbouring levels, below the lowest level and above the highest
+/// level. Steps between two levels and ridges outside the levels are therefore found.
 [[nodiscard]] LikelihoodScan scan_likelihood(const PooledCounts& counts, const ScanGrid& grid);
 
-/// Returns the maximum over the domain, starting from its scan. If the likelihood increases towards a slope limit, the
-/// place is at that limit.
+/// Returns the maximum over the domain. `scan`: scan of the same counts, from which the Newton steps start. If the
+/// likelihood increases up to a limit of the slope, the maximum is at that limit.
 [[nodiscard]] Maximum<3> global_maximum(const PooledCounts& counts, PsychometricForm form, const LikelihoodScan& scan,
                                         std::optional<double> lapse);
 
-/// Returns the maximum over slope and lapse at one threshold, from a scan over both and Newton steps from each local
-/// maximum.
+/// Returns the maximum over slope and lapse at one threshold. Slope and lapse are scanned, and Newton steps start from
+/// each local maximum.
 [[nodiscard]] Maximum<3> profile_maximum(const PooledCounts& counts, PsychometricForm form, const ScanGrid& grid,
                                          std::optional<double> lapse, double t);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fits graded answers at many contrasts with the function of a twin, stretched in size by a polynomial of the contrast.
+// Fits graded answers at many contrasts with the function of a twin. The function is stretched in size; the stretch is
+// a polynomial of the contrast.
 #pragma once
 
 #include <array>
@@ -28,7 +29,7 @@ struct RampValue {
   ClusteredVariance variance;  ///< variance of ln S75, over set-ups
 };
 
-/// Difference of ln S75 between ramps up and down; zero if the fit failed.
+/// Difference of ln S75 between ramps up and down; all members are 0 if the fit failed.
 struct RampDifference {
   double ln_up_over_down = 0, standard_error = 0;
   double limit = 0;  ///< critical value of |ln_up_over_down| at 1 %, two-sided
@@ -59,10 +60,10 @@ class RampFit {
   [[nodiscard]] std::vector<AnswerScore> scores(double centre) const;
 
   std::vector<RampAnswer> answers_;
-  std::vector<double> u_;  ///< of the answers
+  std::vector<double> u_;  ///< contrast_bend() of each answer
   ContrastSurface surface_;
-  std::size_t powers_ = 3;      ///< parameters of the stretch
-  std::size_t parameters_ = 3;  ///< includes the parameter of the directions, the last one
+  std::size_t powers_ = 3;      ///< number of parameters of the stretch
+  std::size_t parameters_ = 3;  ///< number of parameters; the last one is that of the directions, if it is fitted
   std::array<double, most_parameters> value_{};
 };
 

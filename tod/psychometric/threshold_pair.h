@@ -9,15 +9,15 @@
 
 namespace todbench {
 
-/// Maxima of the summed ln likelihood, and the difference of the thresholds at the separate maximum.
+/// Maxima of the summed ln likelihood with separate thresholds and with a common threshold.
 struct PairMaxima {
   double ll_separate = 0, ll_common = 0;
-  double ln_ratio = 0;                ///< ln(threshold A / threshold B)
-  std::optional<double> se_ln_ratio;  ///< from the observed information; empty if it is singular
+  double ln_ratio = 0;                ///< ln(threshold A / threshold B) at the maximum with separate thresholds
+  std::optional<double> se_ln_ratio;  ///< from the observed information; empty if the information is singular
 };
 
-/// Joint fit of two data sets. A free lapse is free in each set. Precondition: levels are valid and each set has a
-/// positive size.
+/// Joint fit of two data sets. A free lapse is fitted separately in each set. Precondition: levels are valid, and each
+/// set has answers at a positive size.
 class ThresholdPair {
  public:
   ThresholdPair(std::span<const Level> a, std::span<const Level> b, const FitOptions& options);

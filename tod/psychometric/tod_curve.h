@@ -19,8 +19,8 @@ namespace todbench {
 /// Reason for the kind of answers: graded or binary.
 enum class AnswersReason {
   plan,               ///< stated by the plan
-  twin,               ///< graded: the model observer judges, and the function of the twin is fitted
-  weibull,            ///< the error of a Weibull function exceeds the interval of graded answers
+  twin,               ///< graded answers: the model observer judges, and the function of the twin is fitted
+  weibull,            ///< a Weibull function is fitted, and its error exceeds the interval of graded answers
   lapse,              ///< the plan has a lapse, but graded answers come from an observer without a lapse
   adaptive,           ///< in sessions of earlier versions: the schedule is adaptive
   grey_levels,        ///< intervals of graded answers are not validated for contrasts in grey levels
@@ -35,7 +35,7 @@ inline constexpr std::array all_answers_reasons{
     AnswersReason::adaptive, AnswersReason::grey_levels, AnswersReason::few_presentations, AnswersReason::no_function,
     AnswersReason::person,   AnswersReason::package,     AnswersReason::moving_target};
 [[nodiscard]] std::string_view to_string(AnswersReason reason);
-/// Returns the reason for a sentence: "the plan names them".
+/// Returns the reason as a part of a sentence, for example "the plan names them".
 [[nodiscard]] std::string_view in_words(AnswersReason reason);
 
 /// Answers from which a threshold was fitted.
@@ -50,13 +50,13 @@ struct AnswersTaken {
 struct DirectionAnswers {
   int trials = 0;
   double correct = 0;  ///< sum of the probabilities, or number of correct answers
-  double percent = 0;  ///< threshold relative to that of all directions, minus 1, in percent, to first order
+  double percent = 0;  ///< (threshold / threshold of all directions - 1) in percent, to first order
 };
 
 /// Thresholds by the direction of the triangles in the picture (tod/adequacy/orientation.h).
 struct Orientations {
   std::array<DirectionAnswers, all_apexes.size()> directions{};  ///< in the order of all_apexes
-  double axes_percent = 0;     ///< threshold of up and down divided by threshold of left and right, minus 1
+  double axes_percent = 0;     ///< (threshold of up and down / threshold of left and right - 1) in percent
   double axes_se_percent = 0;  ///< standard error, from the scatter over plates and mountings
   int set_ups = 0;             ///< number of plates and mountings
   double p = 1;                ///< probability that chance causes a larger difference
@@ -64,24 +64,25 @@ struct Orientations {
 
 /// One contrast of a TOD curve.
 struct TodPoint {
-  double set_delta_t_k = 0;  ///< set contrast, by which points are paired
+  double set_delta_t_k = 0;  ///< set contrast, by which the points of two curves are matched
   double delta_t_k = 0;      ///< effective contrast measured by the camera (mean over trials)
-  /// Standard error of delta_t_k by contrast_error(), from its measurements (one per set-up and set-point) and their
-  /// triangles. If no triangles are recorded, it comes from the measurements alone. It is then 0 for a single
-  /// measurement, whose scatter is not known (contrast_se_k()).
+  /// Standard error of delta_t_k by contrast_error(), from the measurements (one per set-up and set-point) and their
+  /// triangles. If no triangles are recorded, it is computed from the measurements alone. It is then 0 for a single
+  /// measurement, because the scatter is not known (contrast_se_k()).
   double delta_t_se_k = 0;
   double delta_t_shared_se_k = 0;  ///< part of delta_t_se_k that the scatter over measurements does not contain
   int delta_t_measurements = 0;    ///< number of measurements; 0: not stated
-  std::optional<double> delta_t_freedom{};  ///< degrees of freedom of that error; empty: measurements minus one
+  std::optional<double> delta_t_freedom{};  ///< degrees of freedom of delta_t_se_k; empty: measurements minus one
   std::vector<Level> levels;                ///< data of the fit: counts, one row per size and cluster
-  PsychometricFit fit;                      ///< in mrad
+  PsychometricFit fit;                      ///< fit with sizes in mrad
   /// Reason for a Weibull function or for the function of the twin; empty: not stated.
   std::optional<EstimatorReason> estimator_reason;
   std::optional<AnswersTaken> answers;            ///< empty: not stated
   std::optional<PsychometricFit> free_lapse_fit;  ///< fit of the same answers with a free lapse, as a check
-  bool lapse_warning = false;             ///< the free lapse explains the data significantly better (2 ln LR > 2.71)
-  std::optional<Adequacy> adequacy;       ///< findings against the threshold; empty: not examined
-  std::optional<double> direct_s75_mrad;  ///< for simulated sensors only; does not assume a psychometric form
+  bool lapse_warning = false;        ///< the free lapse explains the data significantly better (2 ln LR > 2.71)
+  std::optional<Adequacy> adequacy;  ///< findings against the threshold; empty: not examined
+  /// S75 from the direct estimate, without an assumed psychometric form; only for simulated sensors.
+  std::optional<double> direct_s75_mrad;
   std::optional<double> direct_s75_se_mrad;
   /// S75 over the range of the observer's open parameters, low and high. This is not a confidence interval. Empty: the
   /// observer has no open parameters, or they were not varied.
@@ -105,28 +106,30 @@ struct ContinuousPoint {
 struct TodCurve {
   std::string observer, sensor;
   std::vector<TodPoint> points;               ///< contrast decreasing
-  std::vector<ContinuousPoint> continuous{};  ///< curve of a ramp, contrast decreasing; empty: contrasts were settled
+  std::vector<ContinuousPoint> continuous{};  ///< curve of a ramp, contrast decreasing; empty: the run had no ramp
 };
 
 /// Smallest gain in twice the ln likelihood with which a free lapse causes a warning. It corresponds to 5 % for a
 /// parameter that is at its bound under the null hypothesis.
 inline constexpr double boundary_drop = 2.705543454095404;
 
-/// Groups trials by set contrast, counts them per size and presentation, and fits each group. Intervals are clustered
-/// by presentation and by place on the plate (because a place shares fixed pattern); the wider one is reported. If all
-/// answers of a group are graded, fit_graded() fits them, with both clusterings in one variance.
+/// Groups trials by set contrast, counts them per size and presentation, and fits each group. Intervals are computed
+/// with clusters by presentation and with clusters by position on the plate, because answers at one position have the
+/// same fixed pattern. The wider interval is reported. If all answers of a group are graded, they are fitted by
+/// fit_graded(), and one variance includes both kinds of clusters.
 [[nodiscard]] Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& options);
 
-/// Converts trials to binary answers to one frame each.
+/// Converts trials to binary answers, each to one frame.
 [[nodiscard]] std::vector<Trial> as_binary(std::span<const Trial> trials);
 
-/// Returns the answers with their presentations and places. Binary answers have probabilities of 1 and 0.
+/// Returns the answers with their presentations and places. For binary answers the probabilities are 1 and 0.
 [[nodiscard]] std::vector<GradedAnswer> graded_answers(std::span<const Trial> trials);
 
-/// Returns whether two set contrasts are regarded as equal: to 0.5 % of the larger.
+/// Returns whether two set contrasts differ by at most 0.5 % of the larger one. They are then regarded as equal.
 [[nodiscard]] bool same_contrast(double a_k, double b_k);
 
-/// Returns the point of a curve with this set contrast, the nearest one of several; null if there is none.
+/// Returns the point of a curve with this set contrast. If there are several, it returns the nearest one. Null if there
+/// is none.
 [[nodiscard]] const TodPoint* point_at(const TodCurve& curve, double set_delta_t_k);
 
 }  // namespace todbench

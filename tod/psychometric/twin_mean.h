@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mean of answers according to the function of a twin, in the parameters of the search.
+// Mean of answers according to the function of a twin, as a function of the parameters of the search.
 #pragma once
 
 #include <array>
@@ -20,14 +20,14 @@ inline constexpr std::size_t twin_size = 0, twin_slope = 1, twin_bend = 2, twin_
 [[nodiscard]] double largest_twin_lapse(const TwinShape& shape);
 
 /// Mean of an answer: mu(S) = 1/4 + r (F(c + k d + e d^2) - 1/4) with d = ln S - ln S75, r = 1 - lapse / (3/4) and F(c)
-/// = 1/4 + 1/2 / r, so that mu(S75) = 3/4 for every lapse. Keeps a reference to the shape.
+/// = 1/4 + 1/2 / r. Therefore mu(S75) = 3/4 for every lapse. The shape must outlive the object.
 class TwinMean {
  public:
   TwinMean(const TwinShape& shape, const TwinPlace& place);
 
   struct Value {
     double value = 0;
-    std::array<double, 4> gradient{};  ///< per unit of each parameter
+    std::array<double, 4> gradient{};  ///< derivative with respect to each parameter
   };
   /// Returns the value at ln(size / mrad).
   [[nodiscard]] Value at(double ln_size) const;
@@ -37,7 +37,7 @@ class TwinMean {
   TwinPlace place_;
   double share_ = 1;     ///< r
   double centre_ = 0;    ///< c
-  double d_centre_ = 0;  ///< per unit of lapse
+  double d_centre_ = 0;  ///< derivative of c with respect to the lapse
 };
 
 }  // namespace todbench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fit of answers with the function of a simulated twin instead of a Weibull function. The function comes from the
-// direct estimate of the twin and is stretched in ln size.
+// Fits answers with the function of a simulated twin instead of a Weibull function. The function is the direct estimate
+// of the twin, stretched in ln size.
 #pragma once
 
 #include <memory>
@@ -14,16 +14,16 @@ namespace todbench {
 /// A table as a smooth, increasing function of ln size. Immutable, cheap to copy.
 class TwinShape {
  public:
-  /// Creates the function from ln((P - 1/4) / (1 - P)), which is nearly straight in ln size. This is smoothed by local
-  /// parabolas through seven nodes, weighted by their standard errors, made increasing, and joined by monotone cubics
-  /// (Fritsch and Carlson 1980). It is straight outside the nodes that distinguish P from chance and from 1. Errors:
-  /// `invalid_input` (sizes that do not increase, proportions outside 0 to 1, fewer than five such nodes, or none on
-  /// one side of 75 %).
+  /// Creates the function from ln((P - 1/4) / (1 - P)), which is nearly a straight line in ln size. These values are
+  /// smoothed by local parabolas through seven nodes, weighted by their standard errors. They are then made increasing
+  /// and joined by monotone cubics (Fritsch and Carlson 1980). Outside the nodes at which P differs significantly from
+  /// chance level and from 1, the function is a straight line. Errors: `invalid_input` (sizes that do not increase,
+  /// proportions outside 0 to 1, fewer than five such nodes, or none on one side of 75 %).
   [[nodiscard]] static Result<TwinShape> of(const ProportionTable& table);
 
   struct Value {
     double proportion = 0;
-    double derivative = 0;  ///< per unit of ln size
+    double derivative = 0;  ///< derivative per unit of ln size
   };
   /// Returns the value at ln(size / mrad).
   [[nodiscard]] Value at(double ln_size) const;
@@ -43,17 +43,17 @@ class TwinShape {
 /// Returns the proportion of correct answers at ln(size / mrad), for a camera whose function is `use`, with a lapse.
 [[nodiscard]] double twin_proportion(const TwinShape& shape, const TwinShapeUse& use, double lapse, double ln_size);
 
-/// Fits the answers again with the function of the twin. The parameter is the ratio of sizes. A second one, the ratio
-/// of slopes at 75 %, is added if the answers require it (t test, 1 %). A lapse l changes a proportion P of the twin to
-/// 1/4 + (3/4 - l) (P - 1/4) / (3/4). A free lapse (`options.fixed_lapse` empty) is a further parameter from 0 to 0.1.
-/// S75 is the size at 75 % with the lapse. `weibull` is the fit of the same answers by the Weibull function of
+/// Fits the answers again with the function of the twin. The parameter is the ratio of sizes. A second parameter, the
+/// ratio of slopes at 75 %, is added if the answers require it (t test, 1 %). A lapse l changes a proportion P of the
+/// twin to 1/4 + (3/4 - l) (P - 1/4) / (3/4). A free lapse (`options.fixed_lapse` empty) is a further parameter from 0
+/// to 0.1. S75 is the size at 75 % with the lapse. `weibull` is the fit of the same answers by the Weibull function of
 /// `options`. If it has no regular maximum (verdict other than ok and extrapolated), it is returned unchanged.
 ///
-/// Quasi-likelihood as in fit_graded(). Binary answers have probabilities of 1 and 0, and binomial scatter
-/// (clustered_variance.h). Intervals are symmetric in ln threshold: Student's t times the root of the sum of the
-/// variance and the contribution of the standard errors of the table. `slope` is the slope of the Weibull function of
-/// `options.form` with the same derivative at 75 %. Binary answers have a deviance. Errors: `invalid_input` (as
-/// TwinShape::of(), and a fixed lapse with which the table does not reach 75 %).
+/// The fit is by quasi-likelihood, as in fit_graded(). Binary answers have probabilities of 1 and 0, and binomial
+/// scatter (clustered_variance.h). Intervals are symmetric in ln threshold. The half-width is Student's t times the
+/// root of the sum of two variances: that of the answers, and that due to the standard errors of the table. `slope` is
+/// the slope of the Weibull function of `options.form` with the same derivative at 75 %. Binary answers have a
+/// deviance. Errors: `invalid_input` (as TwinShape::of(), and a fixed lapse with which the table does not reach 75 %).
 [[nodiscard]] Result<PsychometricFit> fit_twin_shape(std::span<const GradedAnswer> answers,
                                                      const PsychometricFit& weibull, const ProportionTable& table,
                                                      const FitOptions& options);
@@ -63,16 +63,17 @@ class TwinShape {
 [[nodiscard]] Result<PsychometricFit> twin_fit_with_free_lapse(std::span<const GradedAnswer> answers,
                                                                const PsychometricFit& fit, PsychometricForm form);
 
-/// Returns the gain of a free lapse in twice the ln quasi-likelihood, divided by its inflation; 0 if the lapse is not
-/// larger than the lapse of `fit`. Both fits use the function of the twin.
+/// Returns the gain in twice the ln quasi-likelihood by a free lapse, divided by the variance inflation of the lapse.
+/// It is 0 if the free lapse is not larger than the lapse of `fit`. Both fits use the function of the twin.
 [[nodiscard]] double twin_lapse_gain(const PsychometricFit& fit, const PsychometricFit& free_fit);
 
 /// ln threshold from graded answers according to the function of a twin, and the contribution of each answer.
 struct ShapeEstimate {
   double ln_threshold = 0;
-  std::vector<double> direction;  ///< by answer: the information on ln threshold is the sum of their squares
-  std::vector<double> weight;     ///< by answer: change of ln threshold per unit of its probability
-  std::vector<double> influence;  ///< by answer: weight times (its probability minus its mean)
+  /// One value per answer; the sum of the squares is the information about ln threshold.
+  std::vector<double> direction;
+  std::vector<double> weight;     ///< for each answer, change of ln threshold per unit of its probability
+  std::vector<double> influence;  ///< for each answer, weight times (probability minus mean)
 };
 
 /// Computes the quasi-likelihood estimate of fit_twin_shape(), with one parameter, or two if `with_slope`. Answers

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Modulation of four bars after a transfer function and sampling, by phase.
+// Modulation of four bars after a transfer function and sampling, as a function of the sampling phase.
 #pragma once
 
 #include <functional>
@@ -7,12 +7,12 @@
 
 namespace todbench {
 
-/// Four bars of width 1 / (2 f) with equal spaces, contrast 1 and their middle at 0, after a real transfer function
-/// along the axis across them. Immutable, thread-safe.
+/// Four bars of width 1 / (2 f), with spaces of the same width, contrast 1 and the middle of the group at 0. A real
+/// transfer function is applied along the axis across the bars. Immutable, thread-safe.
 class BlurredBars {
  public:
-  /// Computes the bars. `transfer`: function of the frequency in cycles per pitch, even and 1 at 0; regarded as 0 above
-  /// `band_per_pitch`.
+  /// Computes the bars. `transfer`: even function of the frequency in cycles per pitch; 1 at frequency 0. Frequencies
+  /// above `band_per_pitch` are ignored.
   BlurredBars(double frequency_per_pitch, const std::function<double(double)>& transfer, double band_per_pitch);
   /// Returns the value at a position in pitches, accurate to about 1e-12 within the pattern.
   [[nodiscard]] double at(double x_pitch) const;
@@ -23,18 +23,18 @@ class BlurredBars {
   std::vector<double> node_frequency_, node_weight_;
 };
 
-/// Modulation after sampling: mean over the bars of the largest sample within max(w / 2, 1 / 2) of a bar's centre,
-/// minus the mean over the gaps of the smallest sample.
+/// Modulation after sampling: mean of the largest samples of the bars minus mean of the smallest samples of the gaps.
+/// The samples of a bar or gap are those within max(w / 2, 1 / 2) of its centre, where w is the width.
 struct BarModulation {
   double best = 0, mean = 0, worst = 0;  ///< over the phases
   double best_phase_pitch = 0;           ///< position of the lattice relative to the middle of the pattern
-  int bars_separated_at_best = 1;        ///< 1 + number of gaps that are lower than both neighbours
+  int bars_separated_at_best = 1;        ///< 1 + number of gaps that are lower than both neighbouring bars
   double share_of_four = 0;              ///< share of the phases at which four bars are separated
 };
 /// Computes the modulation at the phases (i + 1/2) / phases - 1/2 pitch. Precondition: phases >= 1.
 [[nodiscard]] BarModulation bar_modulation(const BlurredBars& bars, int phases = 64);
-/// Same for any profile as a function of the position in pitches, for example a measured one. It is evaluated up to 7 /
-/// (4 f) + 1 / 2 from the middle.
+/// Computes the modulation of any profile, for example a measured one. `profile`: function of the position in pitches;
+/// it is evaluated up to 7 / (4 f) + 1 / 2 from the middle.
 [[nodiscard]] BarModulation bar_modulation(const std::function<double(double)>& profile, double frequency_per_pitch,
                                            int phases = 64);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ranges from criteria for a target: cycles (ACQUIRE, MTDP-like) and the TTP metric. Pure functions of curves and air.
+// Ranges from criteria for a target: cycles (ACQUIRE, MTDP-like) or values (TTP metric). Pure functions of curves and
+// air.
 #pragma once
 
 #include <functional>
@@ -15,30 +16,31 @@
 
 namespace todbench {
 
-/// The target in models that use cycles or values.
+/// Target of a model that uses cycles or values.
 struct CriterionTarget {
   double size_m = 0;    ///< square root of the projected area, > 0
-  double contrast = 0;  ///< at the target, > 0: kelvin for an MRTD, luminance contrast for a CTF
+  double contrast = 0;  ///< contrast at the target, > 0; in kelvin for an MRTD, luminance contrast for a CTF
 };
 
-/// Resolution of the target at an apparent contrast, per milliradian of its size. It is the highest resolved frequency,
-/// or the integral of the TTP metric. It does not decrease with contrast; empty if the contrast lies below the curve.
+/// Resolution at an apparent contrast, per milliradian of the size of the target. It is the highest resolved frequency,
+/// or the integral of the TTP metric. It does not decrease with increasing contrast. Empty if the contrast is below the
+/// curve.
 using ResolvedPerMrad = std::function<std::optional<double>(double apparent_contrast)>;
-/// Returns the resolution for ACQUIRE: the highest frequency in cycles/mrad at which the curve is at most the contrast.
-/// Above the curve's highest point it is the last frequency, without extrapolation.
+/// Returns the resolution for ACQUIRE: the highest frequency in cycles/mrad at which the value of the curve is at most
+/// the contrast. If the contrast is above all values of the curve, it is the last frequency, without extrapolation.
 [[nodiscard]] ResolvedPerMrad resolved_cycles(LogLinearCurve curve);
 /// Returns the resolution for the 2-D frequency of ACQUIRE, sqrt(f_h f_v) at the same contrast.
 [[nodiscard]] ResolvedPerMrad resolved_cycles(LogLinearCurve horizontal, LogLinearCurve vertical);
 /// Returns the resolution for TTP: the integral of sqrt(C / CTF) over the frequencies at which CTF < C, in 1/mrad.
 [[nodiscard]] ResolvedPerMrad resolved_values(LogLinearCurve ctf);
 
-/// Criterion of a range: number of cycles or values on the target for a probability of 50 %.
+/// Criterion of a range: number of cycles or values on the target at which the probability is 50 %.
 struct Criterion {
   double at_half = 0;  ///< N50 or V50, > 0
   ProbabilityForm form = ProbabilityForm::johnson;
 };
 
-/// The quantity whose relative change has the larger effect on the range for a probability.
+/// The quantity, of resolution and contrast, whose relative change has the larger effect on the range.
 enum class DominantLimit { resolution, contrast };
 [[nodiscard]] std::string_view to_string(DominantLimit limit);
 
@@ -49,12 +51,13 @@ struct RangeSensitivity {
     return to_contrast > to_size ? DominantLimit::contrast : DominantLimit::resolution;
   }
 };
-/// Computes both from a function of (size factor, contrast factor) that returns a range, by differences of 1 %; empty
+/// Computes both by differences of 1 %. `range`: function of (size factor, contrast factor) that returns a range. Empty
 /// if the function returns no value.
 [[nodiscard]] std::optional<RangeSensitivity> sensitivity_of(
     const std::function<std::optional<double>(double size_factor, double contrast_factor)>& range);
 
-/// Returns x at a range: resolution of the target divided by the criterion; empty outside the curve or the air's table.
+/// Returns the ratio x at a range: number of cycles or values on the target divided by the criterion. Empty outside the
+/// curve or outside the table of the air.
 [[nodiscard]] std::optional<double> criterion_ratio(const ResolvedPerMrad& resolved, const CriterionTarget& target,
                                                     const Transmittance& air, const Criterion& criterion,
                                                     double range_m);
@@ -62,12 +65,12 @@ struct RangeSensitivity {
 /// The range at which a probability is reached, or the reason why there is no such range.
 struct CriterionRange {
   std::optional<double> range_m;
-  std::optional<double> at_least_m;  ///< if there is no range: up to here the probability is higher
+  std::optional<double> at_least_m;  ///< if there is no range: the probability is higher up to this range
   std::string reason;                ///< a sentence; empty if there is a range
   std::optional<RangeSensitivity> sensitivity;
 };
-/// Returns the smallest range at which the ratio decreases to the ratio for the probability. Preconditions: values of
-/// the target and the criterion > 0 and finite, 0 < probability < 1.
+/// Returns the smallest range at which criterion_ratio() decreases to the ratio for the probability. Preconditions:
+/// values of target and criterion > 0 and finite, 0 < probability < 1.
 [[nodiscard]] CriterionRange range_for_probability(const ResolvedPerMrad& resolved, const CriterionTarget& target,
                                                    const Transmittance& air, const Criterion& criterion,
                                                    double probability);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A threshold as a function of frequency (MRTD or contrast threshold function), given by points with linear
-// interpolation of its logarithm.
+// A threshold as a function of frequency (MRTD or contrast threshold function). It is given by points; its logarithm is
+// interpolated linearly.
 #pragma once
 
 #include <optional>
@@ -17,21 +17,21 @@ struct CurvePoint {
   double value = 0;      ///< > 0
 };
 
-/// A curve whose ln(value) is linear in frequency between points: exact for a exp(b f). Undefined outside the points.
-/// Immutable.
+/// A curve whose ln(value) is linear in frequency between points. The interpolation is exact for a exp(b f). Undefined
+/// outside the points. Immutable.
 class LogLinearCurve {
  public:
-  /// Creates a curve. `what`: name of the curve in messages, "MRTD". Errors: `invalid_input` in one sentence (fewer
-  /// than two points, frequencies that do not increase, values that are not positive and finite).
+  /// Creates a curve. `what`: name of the curve in messages, for example "MRTD". Errors: `invalid_input` (fewer than
+  /// two points, frequencies that do not increase, or values that are not positive and finite).
   [[nodiscard]] static Result<LogLinearCurve> of(std::span<const CurvePoint> points, std::string_view what);
 
   [[nodiscard]] std::span<const CurvePoint> points() const { return points_; }
   /// Returns the value at a frequency; empty outside the points.
   [[nodiscard]] std::optional<double> at(double frequency) const;
-  /// Returns the highest frequency whose value is at most `value`; empty if all points lie above.
+  /// Returns the highest frequency at which the curve is at most `value`. Empty if all points are above `value`.
   [[nodiscard]] std::optional<double> highest_frequency_at(double value) const;
-  /// Returns the integral of sqrt(value / curve) over all frequencies at which the curve lies below `value`, in closed
-  /// form between points; 0 if the curve lies above everywhere.
+  /// Returns the integral of sqrt(value / curve) over all frequencies at which the curve is below `value`. It is
+  /// computed in closed form between points. 0 if the curve is above `value` everywhere.
   [[nodiscard]] double root_excess_integral(double value) const;
 
  private:

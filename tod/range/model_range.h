@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Result of one range model, in the form that all reports and programs show.
+// Result of one range model, in the form used by all reports and programs.
 #pragma once
 
 #include <optional>
@@ -25,19 +25,20 @@ struct ModelRange {
   std::string criterion;  ///< name of the criterion: "M75", "N50", "V50"
   double criterion_value = 0;
   std::string probability_form;    ///< name of the form
-  std::string reads;               ///< one sentence with the input of the model and its source
-  std::string criterion_origin{};  ///< a phrase: observers whose answers define the criterion, targets, source
-  std::string display{};           ///< one sentence with the contrast on the display that the model assumes
+  std::string reads;               ///< one sentence about the input of the model and the source of this input
+  std::string criterion_origin{};  ///< a phrase that states observers, targets and source of the criterion
+  std::string display{};           ///< one sentence about the contrast on the display that the model assumes
   std::optional<double> r50_m{}, r75_m{};
-  Interval r75_ci95_m{};  ///< from the intervals of the curve and the air; a side is open if unknown
-  /// R75 over the open parameters of the observer of a TOD curve (RangePrediction). This is not a confidence interval.
+  Interval r75_ci95_m{};  ///< from the intervals of the curve and of the air; a side that is not known is open
+  /// R75 over the range of the open parameters of the observer of a TOD curve (RangePrediction). This is not a
+  /// confidence interval.
   std::optional<std::pair<double, double>> r75_spread_m{};
   std::optional<RangeSensitivity> sensitivity{};
   std::string reason{};              ///< reason why there is no r75_m; otherwise empty
   std::vector<std::string> notes{};  ///< assumptions of this model
   std::vector<ModelRangePoint> curve{};
 
-  /// Returns the dominant limit; empty without a range, because the contrast was lost or the air is not known.
+  /// Returns the dominant limit. Empty if there is no range, because the contrast is too low or the air is not known.
   [[nodiscard]] std::optional<DominantLimit> dominant() const {
     return sensitivity ? std::optional(sensitivity->dominant()) : std::nullopt;
   }

@@ -4,47 +4,49 @@
 
 namespace todbench {
 
-/// Standard deviations of the other components of three-dimensional noise, divided by that of tvh: t time, v rows, h
-/// columns. A component that is constant along the bars' period shifts bar and space equally. Therefore tv and v do not
+/// Standard deviations of the other components of three-dimensional noise, divided by that of tvh (t: time, v: rows, h:
+/// columns). A component that is constant across the bars changes bars and spaces equally. Therefore tv and v do not
 /// affect the horizontal MRTD, and th and h do not affect the vertical MRTD.
 struct NoiseRatios {
   double vh = 0, th = 0, tv = 0, h = 0, v = 0;
 };
 
-/// Parameters of an MRTD formula with the structure of FLIR92 (not the output of that program). SNR threshold and
-/// integration time set the scale and depend on the laboratory.
+/// Parameters of an MRTD formula with the structure of FLIR92. Results differ from those of the program FLIR92. SNR
+/// threshold and integration time determine the scale and depend on the laboratory.
 struct MrtdFormula {
   double pitch_mrad = 1;           ///< pitch of the samples, both axes
-  double netd_k = 0.1;             ///< tvh of one frame
+  double netd_k = 0.1;             ///< noise tvh of one frame
   double frame_rate_hz = 50;       ///< rate of independent frames
   double eye_integration_s = 0.1;  ///< integration time of the eye
   double snr_threshold = 2.5;
   NoiseRatios noise{};
-  double noise_filter_sigma_mrad = 0;  ///< Gaussian filter after the noise, per axis; 0: none
+  double noise_filter_sigma_mrad = 0;  ///< sigma of a Gaussian filter after the noise, per axis; 0: no filter
   /// Number of neighbours along either axis that share the fixed offset (vh) of one detector, for example in a
   /// microscan. Temporal noise is independent between them.
   int samples_per_detector = 1;
 };
 
-/// Direction of resolution. horizontal: bars along y, resolved by the horizontal axis; vertical: bars along x.
+/// Axis along which the bars are resolved. horizontal: bars along y; vertical: bars along x.
 enum class BarAxis { horizontal, vertical };
 
 /// Returns the noise of the four bars after integration by eye and brain, in kelvin: SNR NETD sqrt(E_t E_w E_L +
 /// (vh/tvh)^2 E_w E_L + (th/tvh)^2 E_t E_w + (h/tvh)^2 E_w). E_t = 1 / (frame rate x integration time); E_w = 2 p int
 /// N^2 sinc^2(v w) dv over a bar's width w = 1 / (2 f), E_L over its length 7 w. If n samples share a detector, the
-/// factors of vh have the density p shared_density() instead of p. At low frequencies this density is n times as large,
-/// as for the detectors' pitch. Preconditions: all > 0.
+/// factors of vh contain p shared_density() instead of p. At low frequencies this density is n times as large, as for
+/// samples at the pitch of the detectors. Preconditions: all values > 0.
 [[nodiscard]] double perceived_noise_k(const MrtdFormula& formula, double frequency_per_mrad, BarAxis axis);
 
-/// Returns the spectral density of noise that n neighbouring samples share, relative to independent samples of the same
-/// variance, at cycles per sample: sum over |k| < n of (1 - |k| / n) cos(2 pi f k). Precondition: n > 0.
+/// Returns the spectral density of noise common to n neighbouring samples, relative to independent samples of the same
+/// variance: sum over |k| < n of (1 - |k| / n) cos(2 pi f k), where f is the frequency in cycles per sample.
+/// Precondition: n > 0.
 [[nodiscard]] double shared_density(int n, double cycles_per_sample);
 
 /// Returns the MRTD: (pi^2 / 8) perceived noise / MTF. The factor 8 / pi^2 is the first harmonic of bars, 4 / pi, times
 /// its mean over half a period. Precondition: mtf > 0.
 [[nodiscard]] double mrtd_k(const MrtdFormula& formula, double frequency_per_mrad, double mtf, BarAxis axis);
-/// Returns (pi / 2) perceived noise / modulation at best phase. With fine sampling the modulation is 4 / pi MTF, and
-/// this is the MRTD. A working definition, not the output of TRM. Precondition: modulation > 0.
+/// Returns (pi / 2) perceived noise / modulation at the best phase. With fine sampling the modulation is 4 / pi MTF,
+/// and the result is the MRTD. This is a working definition; results differ from those of the program TRM.
+/// Precondition: modulation > 0.
 [[nodiscard]] double mtdp_like_k(const MrtdFormula& formula, double frequency_per_mrad, double modulation,
                                  BarAxis axis);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Predicts the range at which a target is identified, from a TOD curve.
+// Predicts from a TOD curve the range at which a target is identified.
 #pragma once
 
 #include <optional>
@@ -25,16 +25,18 @@ struct TodThreshold {
   /// Magnitude of the set contrast of `delta_t_k`, which identifies this point; 0: not known.
   double set_delta_t_k = 0;
   std::optional<Adequacy> adequacy{};  ///< findings against the threshold; empty: not examined
-  /// S75 over the open parameters of an observer with an eye, low and high; empty: no open parameters, or not varied.
+  /// Lowest and highest S75 over the range of the open parameters of an observer with an eye. Empty: no open
+  /// parameters, or not varied.
   std::optional<std::pair<double, double>> s75_spread_mrad{};
 };
 
 /// Target and air of a prediction. Signal and criterion as in Bijl, Hogervorst and Vos (EO-VISTA), 4.2.3.
 struct RangeTask {
-  double size_m = 0;                   ///< square root of the projected area, > 0
-  double delta_t_k = 0;                ///< contrast at the target; only the magnitude matters
-  double m75 = 5.1;                    ///< M at which 75 % of the answers are correct, > 0; 5.1: small craft, side view
-  double extinction_per_km = 0;        ///< >= 0; the apparent contrast is the contrast times exp(-extinction range)
+  double size_m = 0;     ///< square root of the projected area, > 0
+  double delta_t_k = 0;  ///< contrast at the target; only the magnitude matters
+  double m75 = 5.1;      ///< value of M at which 75 % of the answers are correct, > 0; 5.1: small craft in side view
+  /// Extinction coefficient, >= 0; apparent contrast = contrast * exp(-extinction * range).
+  double extinction_per_km = 0;
   std::optional<Transmittance> air{};  ///< replaces the extinction, which is then 0
 };
 
@@ -58,15 +60,17 @@ struct RangePoint {
 
 /// Result of predict_range().
 struct RangePrediction {
-  std::optional<double> r75_m;  ///< empty if the target line does not intersect the TOD curve
-  Interval r75_ci95_m;          ///< from the intervals of the thresholds
-  /// R75 at both ends of the spreads of the thresholds, low and high. This is not a confidence interval. Empty: a
-  /// threshold has no spread, or an end has no range; a note states the reason.
+  /// Range at which the probability is 75 %; empty if the target line does not intersect the TOD curve.
+  std::optional<double> r75_m;
+  Interval r75_ci95_m;  ///< 95 % interval from the intervals of the thresholds
+  /// R75 for the lowest and for the highest values of the spreads of the thresholds, low and high. This is not a
+  /// confidence interval. Empty: a threshold has no spread, or one of the two curves has no range. A note states the
+  /// reason.
   std::optional<std::pair<double, double>> r75_spread_m{};
   std::string reason;              ///< a sentence with the reason why there is no r75_m; otherwise empty
   std::vector<std::string> notes;  ///< assumptions of this prediction
-  /// Findings against the thresholds that determine the range and its interval. Each sentence contains the contrast.
-  /// Empty if none of these thresholds was examined.
+  /// Findings against the thresholds that determine the range and its interval. Each sentence states the contrast.
+  /// Empty: no threshold of these was examined.
   std::optional<Adequacy> adequacy;
   std::vector<RangePoint> curve;  ///< range increasing
 };
@@ -86,18 +90,19 @@ struct ThresholdSelection {
 [[nodiscard]] std::optional<double> interpolated_acuity_per_mrad(std::span<const TodThreshold> sorted,
                                                                  double delta_t_k);
 
-/// Returns the contrast at which the curve is evaluated for a target. If points have this set or effective contrast
-/// (same_contrast(), as in a comparison of curves), it is the effective contrast of the nearest of these points.
-/// Otherwise it is the contrast itself. Points without a set contrast are not considered.
+/// Returns the contrast at which the curve is evaluated for a target. If points have a set contrast or an effective
+/// contrast equal to `delta_t_k` (same_contrast(), as in a comparison of curves), it is the effective contrast of the
+/// nearest of these points. Otherwise it is `delta_t_k`. Points without a set contrast are ignored.
 [[nodiscard]] double contrast_on_curve(std::span<const TodThreshold> thresholds, double delta_t_k);
 
-/// Solves M(R) = (size / R) acuity(contrast tau(R)) = M75 for the smallest R; tau is exp(-extinction R) or the
-/// transmittance of the air. The interval contains the R at which M75 is within the 95 % interval of M(R), for
-/// independent errors of neighbouring thresholds. The target's contrast is converted by contrast_on_curve(). Errors:
-/// `invalid_input` (a parameter out of its range, both extinction and air, no thresholds, thresholds that are not
-/// positive and finite, or two at one contrast).
+/// Solves M(R) = (size / R) acuity(contrast tau(R)) = M75 for the smallest R. tau is exp(-extinction R) or the
+/// transmittance of the air. The interval consists of the ranges R for which M75 is within the 95 % interval of M(R).
+/// The errors of neighbouring thresholds are assumed to be independent. The contrast of the target is converted by
+/// contrast_on_curve(). Errors: `invalid_input` (a parameter out of its range, both extinction and air, no thresholds,
+/// thresholds that are not positive and finite, or two at one contrast).
 [[nodiscard]] Result<RangePrediction> predict_range(std::span<const TodThreshold> thresholds, const RangeTask& task);
-/// Computes one range. The contrast is 0 beyond the end of the air's table. Errors: as predict_range().
+/// Computes the probability at one range. Beyond the last range of the table of the air, the apparent contrast is 0.
+/// Errors: as predict_range().
 [[nodiscard]] Result<RangePoint> range_point(std::span<const TodThreshold> thresholds, const RangeTask& task,
                                              double range_m);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts a TOD curve to the frequencies of four bars with the same threshold, by an empirical function.
+// Converts a TOD curve to frequencies of four bars that have the same threshold contrast, by an empirical function.
 #pragma once
 
 #include <optional>
@@ -17,15 +17,17 @@ namespace todbench {
 /// of ln(A / A0) between two levels; A0 is the acuity at the highest contrast of the curve, its asymptote. A published
 /// parameter set is never changed; a change gets a new name.
 struct TodTransfer {
-  std::string_view name;      ///< versioned
+  std::string_view name;      ///< versioned name
   std::string_view observer;  ///< observer who judged triangles and bars; the transfer is valid only for this observer
-  std::string_view source;    ///< a phrase with imagers, observer and definition of the bars' threshold
-  double ln_low = 0, ln_high = 0;   ///< ln k far below and far above `ln_centre`
-  double ln_centre = 0;             ///< ln(A / A0) midway between the two levels
-  double ln_width = 1;              ///< width of the transition, > 0
-  double least = 0;                 ///< lowest studied A / A0
-  double asymptote_over_noise = 0;  ///< (contrast / noise per sample) at which a curve has reached its asymptote
-  double half_width_ln = 0;         ///< half-width of the 95 % interval of ln f for an imager that was not studied
+  /// A phrase that states the imagers, the observer and the definition of the threshold for bars.
+  std::string_view source;
+  double ln_low = 0, ln_high = 0;  ///< ln k far below and far above `ln_centre`
+  double ln_centre = 0;            ///< ln(A / A0) midway between the two levels
+  double ln_width = 1;             ///< width of the transition, > 0
+  double least = 0;                ///< lowest studied A / A0
+  /// Smallest (contrast / noise per sample) at which a curve has reached its asymptote.
+  double asymptote_over_noise = 0;
+  double half_width_ln = 0;  ///< half-width of the 95 % interval of ln f for an imager that was not studied
   /// Strongest edge filter of the camera (SensorSpec::edge_boost) for which the transfers are valid.
   static constexpr double highest_edge_boost = 0.2;
 };
@@ -40,14 +42,14 @@ struct TodTransfer {
 
 /// A TOD curve as frequencies of bars.
 struct TransferredCurve {
-  /// The member s75_mrad is 1 / f. Intervals combine those of S75 and of A0. They do not include the error of the
-  /// transfer, which all points share (TodTransfer::half_width_ln).
+  /// Points of the curve; s75_mrad is 1 / f. Intervals combine the intervals of S75 and of A0. They do not include the
+  /// error of the transfer, which is common to all points (TodTransfer::half_width_ln).
   std::vector<TodThreshold> points;
   std::vector<std::string> notes;  ///< one sentence for each omitted threshold
 };
-/// Transfers every threshold. Thresholds below the studied range of acuities are omitted, so the curve begins at a
-/// higher contrast. `noise_k`: temporal noise per sample. Errors: `invalid_input` (no threshold, noise not above 0, a
-/// highest contrast that does not reach the asymptote).
+/// Transfers every threshold. Thresholds whose acuity is below the studied range are omitted, so the lowest contrast of
+/// the result may be higher. `noise_k`: temporal noise per sample. Errors: `invalid_input` (no threshold, noise not
+/// above 0, a highest contrast that does not reach the asymptote).
 [[nodiscard]] Result<TransferredCurve> transferred(std::span<const TodThreshold> thresholds,
                                                    const TodTransfer& transfer, double noise_k);
 

@@ -16,21 +16,22 @@ struct TransmittancePoint {
   double transmittance = 1;  ///< 0 to 1
 };
 
-/// Band transmittance as a function of range. The mean over a band is not exponential: strong lines are absorbed first,
-/// and the effective extinction -ln(tau) / R decreases with range. Immutable, thread-safe.
+/// Band transmittance as a function of range. The mean over a band is not an exponential function of the range. Strong
+/// lines are absorbed first, so the effective extinction -ln(tau) / R decreases with range. Immutable, thread-safe.
 class Transmittance {
  public:
   /// Returns the transmittance exp(-K R).
   [[nodiscard]] static Transmittance beer_lambert(double extinction_per_km);
-  /// Interpolates rows in which range increases and transmittance does not increase; a row at 0 m has 1. Between rows
-  /// ln(-ln tau) is linear in ln R, and it continues below the first row towards tau = 1. Next to a row of exactly 1,
-  /// -ln tau is linear in R. Rows below 1e-8 are dropped, because programs that write tables have a lower limit there.
-  /// Undefined beyond the last row. Errors: `invalid_input` in one sentence (no rows, fewer than two usable ones above
-  /// 0 m, unsorted or repeated ranges, a transmittance that is outside 0 to 1 or increases).
+  /// Interpolates a table. The range must increase from row to row, and the transmittance must not increase. A row at 0
+  /// m must have the transmittance 1. Between rows ln(-ln tau) is linear in ln R. Below the first row this line is
+  /// continued towards tau = 1. Next to a row with a transmittance of exactly 1, -ln tau is linear in R. Rows below
+  /// 1e-8 are dropped, because this is the lower limit of programs that write such tables. Undefined beyond the last
+  /// row. Errors: `invalid_input` (no rows, fewer than two usable rows above 0 m, unsorted or repeated ranges, a
+  /// transmittance outside 0 to 1, or a transmittance that increases).
   [[nodiscard]] static Result<Transmittance> of_table(std::span<const TransmittancePoint> rows);
-  /// Returns the weighted mean of exp(-k_i R): Beer and Lambert at every wavelength. Exact at every range.
-  /// Preconditions: as many weights as extinctions, at least one; weights >= 0 and not all 0, extinctions >= 0, all
-  /// finite.
+  /// Returns the weighted mean of exp(-k_i R), the law of Beer and Lambert at every wavelength. It is exact at every
+  /// range. Preconditions: the same number of weights and extinctions, at least one of each; weights >= 0 and not all
+  /// 0; extinctions >= 0; all values finite.
   [[nodiscard]] static Transmittance of_spectrum(std::vector<double> weights, std::vector<double> extinction_per_km);
 
   /// Returns the optical depth -ln tau; empty beyond end_m(). Precondition: range_m >= 0.
@@ -39,8 +40,8 @@ class Transmittance {
   [[nodiscard]] std::optional<double> at(double range_m) const;
   /// Returns the last range of the table; infinite without a table.
   [[nodiscard]] double end_m() const;
-  /// Returns the same air with every optical depth multiplied, for the effect of an error of the extinction.
-  /// Precondition: factor >= 0.
+  /// Returns the same air with every optical depth multiplied by `factor`. Use it to compute the effect of an error of
+  /// the extinction. Precondition: factor >= 0.
   [[nodiscard]] Transmittance with_depth_times(double factor) const;
 
  private:
@@ -49,7 +50,7 @@ class Transmittance {
   };
   Transmittance() = default;
   [[nodiscard]] double table_depth(double range_m) const;
-  std::vector<Row> rows_;  ///< empty: the spectrum
+  std::vector<Row> rows_;  ///< rows of the table; empty: a spectrum is used
   std::vector<double> weights_, extinction_per_km_;
   double factor_ = 1;
 };

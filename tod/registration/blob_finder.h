@@ -14,9 +14,9 @@ struct Blob {
   double strength = 0;  ///< height above the background, in the unit of the picture
 };
 
-/// Returns warm spots of `smallest_px` to `largest_px` (square root of area), the strongest first. Each is cut at half
-/// of its own height, so that a lamp in the picture does not hide a triangle. A background that varies only over more
-/// than about twice `largest_px` has no effect. To find cold spots, pass the negative picture.
+/// Returns warm spots of `smallest_px` to `largest_px` (square root of area), the strongest first. Each spot is
+/// delimited at half of its own height, so a lamp in the picture does not hide a triangle. Variations of the background
+/// over distances above about twice `largest_px` have no effect. To find cold spots, pass the negative picture.
 [[nodiscard]] std::vector<Blob> find_warm_blobs(const cv::Mat1d& picture, double smallest_px, double largest_px);
 
 }  // namespace todbench

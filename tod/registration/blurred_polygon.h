@@ -8,14 +8,14 @@
 
 namespace todbench {
 
-/// Picture of a polygon of contrast 1 in a window, and its change if the polygon moves by 1 px.
+/// Picture of a polygon of contrast 1 in a window, and its derivatives: change of the picture per pixel of shift.
 struct BlurredPolygon {
   cv::Mat1d value, d_shift_x, d_shift_y;
 };
 
-/// Returns the polygon (pixels) convolved with a Gaussian of standard deviation `blur_px` > 0, at the pixel centres of
-/// `window`; the error of `value` is below 5e-6. A Gaussian is a sufficient model of optics, detector and sampling box
-/// for locating a triangle, because to first order only the variance of their shape matters.
+/// Returns the polygon (in pixels) convolved with a Gaussian of standard deviation `blur_px` > 0, at the pixel centres
+/// of `window`. The error of `value` is below 5e-6. For locating a triangle, a Gaussian is a sufficient model of the
+/// blur by optics, detector and sampling, because to first order only the variance of the blur matters.
 [[nodiscard]] BlurredPolygon blurred_polygon(const Polygon& polygon, double blur_px, cv::Rect window);
 
 }  // namespace todbench

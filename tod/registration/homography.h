@@ -8,10 +8,10 @@
 
 namespace todbench {
 
-/// Returns the homography (lower right element 1) with the smallest sum of squared distances between `to` and the
-/// mapped `from`. It is the normalised linear solution (Hartley 1997), improved by the method of Levenberg and
-/// Marquardt. Empty with fewer than four points, if the points do not determine a homography (on one line), or if one
-/// is mapped to infinity. Precondition: as many `to` as `from`.
+/// Returns the homography with the smallest sum of squared distances between `to` and the mapped `from`. Its lower
+/// right element is 1. The normalised linear solution (Hartley 1997) is improved by the method of Levenberg and
+/// Marquardt. Empty with fewer than four points, if the points do not determine a homography (for example if they lie
+/// on one line), or if a point is mapped to infinity. Precondition: `from` and `to` have the same number of points.
 [[nodiscard]] std::optional<cv::Matx33d> fit_homography(std::span<const cv::Point2d> from,
                                                         std::span<const cv::Point2d> to);
 

@@ -13,8 +13,8 @@
 
 namespace todbench {
 
-/// A square window of even side whose centre is a corner between four pixels, as close as possible to the target's
-/// centroid.
+/// A square window with an even number of pixels on a side. Its centre is the corner of four pixels that is nearest to
+/// the centroid of the target.
 struct PatchWindow {
   cv::Rect pixels;
   cv::Point2d phase;  ///< centroid minus window centre, each in [-0.5, 0.5)
@@ -27,8 +27,8 @@ struct PatchWindow {
 struct TouchingWindow {
   std::string triangle, neighbour;
   int side_px = 0;          ///< side of the window
-  double gap_px = 0;        ///< between the window with its search and the neighbour
-  double least_gap_px = 0;  ///< required because of blur
+  double gap_px = 0;        ///< distance between the window, including the search range, and the neighbour
+  double least_gap_px = 0;  ///< required distance, because of blur
 };
 
 /// A triangle whose window is not entirely in the picture.
@@ -38,18 +38,18 @@ struct WindowOutOfPicture {
   cv::Size picture;
 };
 
-/// Returns a sentence: "TRIANGLE: its window of 20 px comes within 0.3 px of ..."
+/// Returns a sentence, for example "TRIANGLE: its window of 20 px comes within 0.3 px of ..."
 [[nodiscard]] std::string sentence(const TouchingWindow& window);
 [[nodiscard]] std::string sentence(const WindowOutOfPicture& window);
 
 /// Returns the triangles of a mounted plate whose window touches a neighbour at the expected scale and aspect of
-/// `options`. The window is widened by the observer's search and half a pixel; because of blur, the edge of the
-/// neighbour is assumed 1.5 px further out. `sides`: in the order of the triangles.
+/// `options`. The window is widened by the search range of the observer and half a pixel. Because of blur, the
+/// neighbour is enlarged by 1.5 px on each side. `sides`: sides of the windows, in the order of the triangles.
 [[nodiscard]] std::vector<TouchingWindow> touching_windows(const TargetPlate& plate, const RegistrationOptions& options,
                                                            const std::vector<int>& sides, double search_px);
 
-/// Returns the triangles whose window leaves a picture of this size, even if only after a motion of the plate of up to
-/// a pixel.
+/// Returns the triangles whose window is partly outside a picture of this size, or would be after a motion of the plate
+/// of up to a pixel.
 [[nodiscard]] std::vector<WindowOutOfPicture> windows_out_of_picture(const TargetPlate& mounted_plate,
                                                                      const Registration& registration,
                                                                      const std::vector<int>& sides, cv::Size picture);

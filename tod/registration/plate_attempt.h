@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Attempt to match a picture with a plate in one mounting.
+// Attempt to match a picture to a plate in one mounting.
 #pragma once
 
 #include <array>
@@ -14,27 +14,28 @@
 
 namespace todbench {
 
-inline constexpr double first_blur_px = 0.45;        ///< optics, detector and sampling box of a focused camera
+inline constexpr double first_blur_px = 0.45;  ///< initial blur: optics, detector and sampling of a focused camera
 inline constexpr double searched_scale_range = 0.3;  ///< relative; wide enough to report a wrong scale
-inline constexpr int credible_pairs = 4;             ///< fewer blobs fit any layout by chance
-inline constexpr double agreement_needed = 0.75;     ///< share of the large triangles that must point as stated by the
-                                                     ///< plate
+/// Smallest number of pairs of a match; fewer blobs agree with any layout by chance.
+inline constexpr int credible_pairs = 4;
+/// Share of the large triangles that must have the direction stated by the plate.
+inline constexpr double agreement_needed = 0.75;
 
-/// Data that all attempts at one scale share. Picture and options must outlive it.
+/// Data common to all attempts at one scale. Picture and options must outlive the object.
 struct PlateSearch {
   const cv::Mat1d& picture;
   const RegistrationOptions& options;
   std::array<std::vector<Blob>, 2> blobs;  ///< warm, cold
 };
 
-/// The plate in one mounting, matched with the picture.
+/// Match of the picture to the plate in one mounting.
 struct PlateAttempt {
   Mounting mounting = Mounting::identity;
   double sign = 1;
   std::vector<PlateTriangle> large;
   LayoutMatch match;
   std::vector<PlateTriangle> located;  ///< triangles with the stated orientation
-  std::vector<cv::Point2d> pixels;     ///< their centroids
+  std::vector<cv::Point2d> pixels;     ///< centroids of these triangles in the picture
   int judged = 0;                      ///< large triangles whose orientation could be determined
   double blur_px = first_blur_px;
   [[nodiscard]] int pairs() const { return static_cast<int>(match.pairs.size()); }
@@ -48,13 +49,13 @@ struct PlateAttempt {
 [[nodiscard]] PlateSearch search_for(const cv::Mat1d& picture, const TargetPlate& plate,
                                      const RegistrationOptions& options);
 
-/// Matches the layout in one mounting with the warm and with the cold blobs. Returns the better match with the
-/// orientations determined. Empty: no arrangement fits.
+/// Matches the layout in one mounting to the warm blobs and to the cold blobs. Returns the better match, with the
+/// orientations of the triangles. Empty: no match.
 [[nodiscard]] std::optional<PlateAttempt> attempt_mounting(const PlateSearch& search, const TargetPlate& plate,
                                                            Mounting relative);
 
-/// Improves mapping, positions and blur alternately. Then excludes triangles displaced by a bad pixel or dirt while
-/// enough remain.
+/// Improves mapping, positions and blur in turn. Then excludes triangles that are displaced by a bad pixel or dirt, as
+/// long as enough triangles remain.
 [[nodiscard]] FittedMapping refine_attempt(const PlateSearch& search, PlateAttempt& at);
 
 /// Returns the positions of the triangles on the plate, in mm.

@@ -15,26 +15,27 @@ namespace todbench {
 /// Difference between a picture and the expected polygons.
 struct ShiftFit {
   cv::Point2d shift;                     ///< common shift of all polygons from their given positions, px
-  cv::Point2d standard_error;            ///< from the residuals, px
+  cv::Point2d standard_error;            ///< standard error of the shift, from the residuals, px
   std::vector<double> amplitudes;        ///< contrast of each polygon, in the unit of the picture
-  std::vector<double> amplitude_errors;  ///< their standard errors
+  std::vector<double> amplitude_errors;  ///< standard errors of the amplitudes
   double residual_rms = 0;               ///< unit of the picture
-  double unexplained = 1;  ///< share of the windows' variance (after removal of a plane) that the polygons do not
-                           ///< explain
+  /// Share of the variance in the windows, after removal of a plane, that the polygons do not explain.
+  double unexplained = 1;
   double joint_significance = 0;  ///< common contrast divided by its standard error; > 0 for warm polygons
 };
 
-/// Fits one common shift of `polygons` (pixels), starting at `start`, with a free contrast and a free background plane
-/// for each. Each polygon is compared in its bounding box and 3 px round it; other objects should be farther away.
-/// Empty if a window leaves the picture, the shift exceeds `reach_px` from `start`, or the picture is flat.
+/// Fits one common shift of `polygons` (in pixels), starting at `start`. The contrast and the background plane are
+/// fitted for each polygon. The window of a polygon is its bounding box and 3 px round it; other objects should be
+/// outside this window. Empty if a window is partly outside the picture, the shift differs from `start` by more than
+/// `reach_px`, or the picture is flat.
 ///
-/// The fit is more precise than the centre of mass. In the centre of mass the weight of noise increases with the
-/// distance from the centre (0.14 px for S = 5 px at contrast / noise = 13). Only noise along the edges affects the fit
-/// (0.023 px).
+/// The fit is more precise than the centre of mass. For S = 5 px and contrast / noise = 13, the error is 0.023 px for
+/// the fit and 0.14 px for the centre of mass. The fit is affected only by noise along the edges; in the centre of
+/// mass, the weight of noise increases with the distance from the centre.
 [[nodiscard]] std::optional<ShiftFit> fit_shift(const cv::Mat1d& picture, std::span<const Polygon> polygons,
                                                 double blur_px, cv::Point2d start, double reach_px);
 
-/// First-order displacement of polygons with a common contrast from their given positions.
+/// Displacement of polygons with a common contrast from their given positions, to first order.
 struct PlaceFit {
   double amplitude = 0, amplitude_error = 0;  ///< common contrast, in the unit of the picture
   cv::Point2d shift, standard_error;          ///< common shift of all polygons, px
@@ -43,10 +44,11 @@ struct PlaceFit {
   double residual_rms = 0;                    ///< unit of the picture
 };
 
-/// Computes one Gauss-Newton step from the given positions. The step is linear in the picture. It is therefore unbiased
-/// and has a known error even if the noise hides every single polygon; a shift above half a pixel is underestimated.
-/// The standard error is the largest of three estimates: independent pixels, noise common to rows, noise common to
-/// columns (sandwich estimate). Empty if a window leaves the picture or the polygons do not determine a shift.
+/// Computes one Gauss-Newton step from the given positions. The step is a linear function of the picture. It is
+/// therefore unbiased and has a known error, even if no single polygon is visible above the noise. A shift above half a
+/// pixel is underestimated. The standard error is the largest of three estimates: independent pixels, noise common to
+/// rows, noise common to columns (sandwich estimate). Empty if a window is partly outside the picture, or if the
+/// polygons do not determine a shift.
 [[nodiscard]] std::optional<PlaceFit> fit_place(const cv::Mat1d& picture, std::span<const Polygon> polygons,
                                                 double blur_px, cv::Point2d centre);
 

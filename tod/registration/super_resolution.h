@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Dynamic super-resolution: frames displaced by fractions of a pixel are registered and averaged on a finer grid. Works
-// for frames of any camera.
+// Dynamic super-resolution: frames that are displaced by fractions of a pixel are registered and averaged on a finer
+// grid. Suitable for frames of any camera.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -11,10 +11,11 @@
 namespace todbench {
 
 /// Returns the displacement of the content of `frame` relative to `reference`, in pixels (x right, y down): a point at
-/// x in the reference is at x + shift in the frame. Gauss-Newton on the squared difference (Lucas and Kanade 1981)
-/// after a Gaussian blur of `blur_sigma_px`, which removes the undersampled frequencies. The iteration starts from a
-/// phase correlation and ignores the difference of the means. Errors: `invalid_input` (sizes differ, fewer than 16
-/// pixels on a side, less than half of the picture common to both, or no structure that determines both directions).
+/// x in the reference is at x + shift in the frame. The squared difference of the pictures is minimised by Gauss-Newton
+/// steps (Lucas and Kanade 1981), starting from a phase correlation. Before this, a Gaussian blur of `blur_sigma_px`
+/// removes the undersampled frequencies. The difference of the means is ignored. Errors: `invalid_input` (sizes differ,
+/// fewer than 16 pixels on a side, less than half of the picture common to both, or no structure that determines both
+/// directions).
 [[nodiscard]] Result<cv::Point2d> frame_shift(const cv::Mat1f& reference, const cv::Mat1f& frame,
                                               double blur_sigma_px = 1.5);
 
@@ -37,19 +38,20 @@ struct SuperResolved {
 /// Treatment of a cell into which no frame falls.
 enum class EmptyCells {
   refused,
-  interpolated  ///< contains the mean of the nearest cells; the picture is not finer along an axis without displacement
+  /// The cell gets the mean of the nearest cells. Along an axis without displacement, the picture is then not finer.
+  interpolated
 };
 
-/// Assigns every sample of every frame to the nearest cell of the finer grid and averages in each cell. The grid is
-/// positioned so that it fits the shifts best (circular mean). Cells beyond a frame's edge without a sample repeat
-/// their nearest neighbour. At least factor^2 frames with different sub-pixel shifts are needed to fill every cell. A
-/// pure function. Errors: `invalid_input` (no frame, different sizes, a missing or non-finite shift, or an empty cell
-/// if these are refused).
+/// Assigns every sample of every frame to the nearest cell of the finer grid and averages in each cell. The position of
+/// the grid is the one that best fits the shifts (circular mean). A cell without a sample at the border of the picture
+/// has the value of its nearest neighbour. At least factor^2 frames with different sub-pixel shifts are needed to fill
+/// every cell. A pure function. Errors: `invalid_input` (no frame, different sizes, a missing or non-finite shift, or
+/// an empty cell if these are refused).
 [[nodiscard]] Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames,
                                                   const std::vector<cv::Point2d>& shifts_px, int factor = 2,
                                                   EmptyCells empty = EmptyCells::refused);
 
-/// Same with the shifts of frame_shifts().
+/// Computes the picture with the shifts of frame_shifts().
 [[nodiscard]] Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Chooses presentations according to the remaining uncertainty of the answers so far.
+// Chooses presentations according to the uncertainty that remains after the previous answers.
 #pragma once
 
 #include <map>
@@ -19,26 +19,27 @@ namespace todbench {
 /// Minimum number of presentations at a contrast before it can be settled.
 inline constexpr int least_adaptive_presentations = 8;
 
-/// Returns the duration of a visit to a set-up, in s. It is the sum of the changes of plate, mounting and contrasts, of
-/// the shifts, and of 0.1 s for each presentation.
+/// Returns the duration of a visit to a set-up, in s. It is the sum of the times for changes of plate, mounting and
+/// contrasts, of the times for shifts, and of 0.1 s for each presentation.
 [[nodiscard]] double visit_seconds(const ConstantStimuliOptions& stimuli, bool other_plate, bool other_mounting,
                                    int contrasts);
 
 /// Options of AdaptiveSchedule.
 struct AdaptiveOptions {
-  /// Plates, mountings, contrasts, pixel and costs of changes. `phases`: presentations per visit. A visit shows one
-  /// contrast in one set-up before the next change.
+  /// Plates, mountings, contrasts, pixel size and costs of changes. `phases`: number of presentations of a contrast in
+  /// a visit to a set-up.
   ConstantStimuliOptions stimuli;
-  std::vector<TargetPlate> plates;  ///< in identity mounting, with the sizes on each plate
+  std::vector<TargetPlate> plates;  ///< plates in identity mounting, with the sizes on each plate
   double distance_m = 0;
   FitOptions fit;  ///< options of the final fit
   /// Functions of the twin by contrast, if the final fit uses them. A contrast without an entry uses a Weibull
   /// function.
   std::map<double, ProportionTable> functions{};
-  double half_width_percent = 10;     ///< target for half the width of the 95 % interval of ln S75, at every contrast
+  double half_width_percent = 10;     ///< target for the half-width of the 95 % interval of ln S75, at every contrast
   bool with_contrast_errors = false;  ///< the interval includes the errors of the measured contrasts
                                       ///< (observe_contrasts())
-  int max_presentations = 1000;       ///< limit over all contrasts; at least one visit to each contrast is made
+  /// Largest number of presentations over all contrasts. At least one visit is made for each contrast.
+  int max_presentations = 1000;
 };
 
 /// Progress at a contrast.
@@ -46,27 +47,30 @@ struct ContrastProgress {
   double delta_t_k = 0;
   double trials = 0;
   int presentations = 0;
-  std::optional<double> half_width_percent;  ///< empty while a side of the interval is open
+  /// Half-width of the interval; empty while a side of the interval is open.
+  std::optional<double> half_width_percent;
   bool settled = false;
-  /// True if the contrast is not settled and at least three quarters of the variance come from the measured contrast.
-  /// Another set-up reduces this variance; another presentation in the same set-up does not.
+  /// True if the contrast is not settled and at least three quarters of the variance are due to the measured contrast.
+  /// Presentations in another set-up reduce this variance; presentations in the same set-up do not.
   bool needs_set_up = false;
 };
 
-/// Share of the variance of an interval above which the measured contrast determines its width.
+/// Share of the variance that is due to the measured contrast. Above this share, the measured contrast determines the
+/// width of the interval.
 inline constexpr double contrast_decides = 0.75;
 
-/// All triangles of a picture are answered together without cost; changing the target costs time. The schedule
-/// therefore chooses set-ups (plate and mounting). It chooses the set-up whose triangles are expected to reduce the
-/// entropy of the thresholds of the open contrasts most (PsiPlacement::expected_gain, summed over triangles) per second
-/// of target changes. Set-ups visited before have less weight, so that places on the plate vary. A visit begins at the
-/// highest contrast, where the plate is registered, and continues with the open ones. A contrast is settled, even
-/// within a visit, when it fulfils three conditions: at least 40 trials of three sizes in eight presentations, a
-/// two-sided interval with a half-width below the target, and a fit that the data do not contradict (deviance, p >
-/// 0.001; graded answers have their own interval and no deviance). If the interval includes the errors of the measured
-/// contrasts and these alone exceed the target, the contrast is settled after two visits of each set-up. The run ends
-/// when all contrasts are settled or at the limit. The shifts of a visit come from even_phases(), over the mountings of
-/// its plate; the shifts of each further visit to a set-up lie between them.
+/// Adaptive choice of set-ups (plate and mounting). A presentation gives answers to all its triangles, and only changes
+/// of the target cost time. The schedule therefore visits the set-up with the largest expected reduction of the entropy
+/// of the thresholds of the open contrasts (PsiPlacement::expected_gain(), summed over triangles) per second of target
+/// changes. Set-ups that were visited before have less weight, so that positions on the plate vary. A visit begins at
+/// the highest contrast, at which the plate is registered. The contrasts that are not settled follow. A contrast is
+/// settled when three conditions are met, also within a visit: at least 40 trials of three sizes in eight
+/// presentations; a two-sided interval with a half-width below the target; and a fit that the data do not contradict
+/// (deviance, p > 0.001). Graded answers have no deviance, and their interval is computed from their own scatter. If
+/// the interval includes the errors of the measured contrasts, and these errors alone exceed the target, the contrast
+/// is settled after two visits of each set-up. The run ends when all contrasts are settled, or at max_presentations.
+/// The shifts of a visit are those of even_phases() over the mountings of its plate. In each further visit to a set-up,
+/// the shifts are between those of earlier visits.
 class AdaptiveSchedule final : public TrialSchedule {
  public:
   AdaptiveSchedule(AdaptiveOptions options, const RandomStream& stream);
@@ -102,7 +106,7 @@ class AdaptiveSchedule final : public TrialSchedule {
   void judge(Contrast& contrast) const;
   /// Fits the answers at a contrast; empty if the fit fails.
   [[nodiscard]] std::optional<TodPoint> fitted(const Contrast& contrast) const;
-  /// Sets the half-width at a contrast. Returns whether it is below the target or cannot reach it.
+  /// Sets the half-width at a contrast. Returns whether the half-width is below the target or cannot reach the target.
   [[nodiscard]] bool narrow_enough(Contrast& contrast) const;
 
   AdaptiveOptions options_;

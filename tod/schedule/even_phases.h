@@ -11,11 +11,11 @@
 
 namespace todbench {
 
-/// A triangle in a group of presentations before any shift. A group (a mounting) has common shifts.
+/// A triangle in a group of presentations, at shift 0. All triangles of a group (a mounting) have the same shifts.
 struct PhasedTriangle {
   std::size_t group = 0;
-  double size = 0;          ///< in any unit; the phases of triangles of equal size are even together
-  Apex apex = Apex::up;     ///< the phases of triangles of equal size and apex are even, too
+  double size = 0;          ///< in any unit; the phases of all triangles of equal size together are evenly spread
+  Apex apex = Apex::up;     ///< the phases of triangles of equal size and apex are also evenly spread
   cv::Point2d position_px;  ///< position of the centroid; a common displacement of all triangles has no effect
 };
 
@@ -25,22 +25,23 @@ struct PhasedTriangle {
 
 /// Shifts of every group, in pixels, in [0, 1)^2.
 struct EvenPhases {
-  std::vector<std::vector<cv::Point2d>> shifts;  ///< per group
-  cv::Point2d cell[2];  ///< sides of the lattice cell: a shift of a group by a multiple of a side has no effect
+  std::vector<std::vector<cv::Point2d>> shifts;  ///< shifts of each group
+  cv::Point2d cell[2];  ///< sides of the lattice cell; shifting a group by a multiple of a side has no effect
 };
 
-/// Returns the lowest harmonic of the pixel grid, in cycles per pixel, that the mean over `count` > 0 phases of a group
-/// contains: the length of the shortest dual vector.
+/// Returns the length of the shortest dual vector of the lattice of `count` > 0 phases. This is the lowest harmonic of
+/// the pixel grid, in cycles per pixel, that does not cancel in the mean over the phases of a group.
 [[nodiscard]] double least_harmonic(int count);
 
-/// Computes `count` shifts for each of `groups` > 0. The shifts of a group form a lattice. Of all lattices with that
-/// many points, it is the one with the longest shortest dual vector: for every triangle, the mean of a function of the
-/// phase over the lattice has no error from harmonics below the length of this vector. The groups are displaced
-/// relative to each other so that the phases of each size, and of each size and orientation, are as even as possible.
-/// The criterion is the smallest sum of squared wrap-around discrepancies (its Fourier series, harmonics of the dual
-/// lattice), found by descent over one group after another. Deterministic. The first shifts of a group are also even,
-/// for up to 2048 shifts. Without triangles, or with more than 2048, whose large number makes their phases even, the
-/// groups are displaced as for one triangle.
+/// Computes `count` shifts for each of `groups` > 0. The shifts of a group form a lattice. Of all lattices with `count`
+/// points, the one with the longest shortest dual vector is used. For every triangle, the mean of a function of the
+/// phase over this lattice has no error from harmonics below the length of this vector. The groups are displaced
+/// relative to each other so that the phases of each size, and of each size and orientation, are spread as evenly as
+/// possible. The criterion is the sum of squared wrap-around discrepancies, computed from its Fourier series with the
+/// harmonics of the dual lattice. It is minimised by descent over one group after another. Deterministic. For up to
+/// 2048 shifts, the first shifts of a group are also evenly spread. Without triangles, the groups are displaced as for
+/// one triangle. The same applies with more than 2048 triangles, because the phases of so many triangles are evenly
+/// spread anyway.
 [[nodiscard]] EvenPhases even_phases(std::span<const PhasedTriangle> triangles, std::size_t groups, int count);
 
 }  // namespace todbench

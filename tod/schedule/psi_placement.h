@@ -13,28 +13,31 @@ namespace todbench {
 /// Options of PsiPlacement.
 struct PsiOptions {
   PsychometricForm form = PsychometricForm::size;
-  double first_size = 1;  ///< the prior of the threshold is uniform in its logarithm between these two, > 0
+  /// Lower limit of the prior of the threshold, which is uniform in ln threshold; > 0.
+  double first_size = 1;
+  /// Upper limit of the prior of the threshold.
   double last_size = 10;
-  double size_step = 0.05;        ///< step of the candidate sizes, in ln
-  double selection_lapse = 0.01;  ///< only in the selection model, so that one slip cannot exclude the truth
+  double size_step = 0.05;  ///< step of the candidate sizes, in ln
+  /// Lapse of the model for the selection. With this lapse, a single wrong answer does not exclude the true threshold.
+  double selection_lapse = 0.01;
   /// Share of trials at 2.5 times the threshold, where only a lapse causes a wrong answer.
   double lapse_probe_share = 0.05;
   double slope_probe_share = 0.1;  ///< share of trials at 45 % correct, which determine the slope
 };
 
-/// Chooses sizes one after another. It selects the size whose answer is expected to leave the least entropy in the
-/// marginal of the threshold (Kontsevich and Tyler 1999; the slope is a nuisance parameter, Prins 2013). The posterior
-/// is stored in logarithms on a grid of ln threshold and ln slope. If its spread falls below two grid steps, the grid
-/// is re-centred and its step is halved. If the posterior reaches an edge, the grid moves. The posterior is then
-/// recomputed from all answers. Use it only to place trials: thresholds come from fit_psychometric(). For answers
-/// placed one by one use its posterior interval, because the coverage of its profile interval is up to 2.6 points below
-/// 95 % (docs/method/uncertainty.md). One thread at a time.
+/// Chooses sizes one after another. It selects the size after whose answer the expected entropy of the marginal of the
+/// threshold is lowest (Kontsevich and Tyler 1999; the slope is a nuisance parameter, Prins 2013). The logarithm of the
+/// posterior is stored on a grid of ln threshold and ln slope. If the spread of the posterior is below two grid steps,
+/// the grid is re-centred and its step is halved. If the posterior reaches an edge, the grid moves. In both cases the
+/// posterior is recomputed from all answers. Use this class only to place trials, and fit_psychometric() to compute
+/// thresholds. For answers placed one by one, use the posterior interval of the fit, because the coverage of its
+/// profile interval is up to 2.6 points below 95 % (docs/method/uncertainty.md). One thread at a time.
 class PsiPlacement {
  public:
   /// Starts without answers. `stream` decides on probes and on ties.
   PsiPlacement(const PsiOptions& options, RandomStream stream);
 
-  /// Returns the next size. It does not change until observe() is called.
+  /// Returns the next size. The size does not change until observe() is called.
   [[nodiscard]] double next() const;
   /// Adds answers at a size > 0; counts as in Level. Any size is allowed.
   void observe(double size, double correct, double total);
@@ -42,8 +45,8 @@ class PsiPlacement {
   /// Return mean and standard deviation of the marginal posterior of ln threshold.
   [[nodiscard]] double mean_ln_threshold() const { return mean_; }
   [[nodiscard]] double sd_ln_threshold() const { return sd_; }
-  /// Returns by how much one answer at `size` is expected to reduce the entropy of the marginal of ln threshold, in
-  /// nats, >= 0.
+  /// Returns the expected reduction, in nats, of the entropy of the marginal of ln threshold by one answer at `size`;
+  /// >= 0.
   [[nodiscard]] double expected_gain(double size) const;
 
  private:
@@ -65,7 +68,7 @@ class PsiPlacement {
   double step_ = 0;                   ///< step of ln threshold
   std::vector<double> ts_, qs_;       ///< nodes
   std::vector<double> ln_posterior_;  ///< [q][t], without a constant
-  std::vector<double> posterior_;     ///< the same normalised to sum 1
+  std::vector<double> posterior_;     ///< [q][t], normalised to a sum of 1
   std::vector<double> marginal_;      ///< marginal posterior of t
   double mean_ = 0, sd_ = 0, mean_q_ = 0, entropy_ = 0;
   double first_candidate_ = 0;  ///< ln size; a multiple of size_step

@@ -23,13 +23,13 @@ class TrialSchedule {
   virtual ~TrialSchedule() = default;
   /// Returns the next state; empty when enough has been shown.
   [[nodiscard]] virtual std::optional<TargetState> next() = 0;
-  /// Returns the total number of presentations, for progress and remaining time. If answers determine it, this is the
-  /// largest possible number.
+  /// Returns the total number of presentations, for progress and remaining time. If this number depends on the answers,
+  /// it returns the largest possible number.
   [[nodiscard]] virtual std::size_t planned() const = 0;
-  /// Receives the answers to the last state of next(). Schedules that do not adapt ignore them.
+  /// Receives the answers to the last state of next(). Schedules that are not adaptive ignore the answers.
   virtual void observe(std::span<const Trial> trials);
-  /// Receives the standard errors of the contrasts measured so far, by set contrast, before the answers that follow.
-  /// Errors that cannot be estimated are missing. Schedules that do not adapt ignore them.
+  /// Receives the standard errors of the contrasts that have been measured, by set contrast. Called before the answers
+  /// that follow. Errors that cannot be estimated are missing. Schedules that are not adaptive ignore the errors.
   virtual void observe_contrasts(const std::map<double, ContrastError>& errors);
 };
 
@@ -43,10 +43,11 @@ struct ConstantStimuliOptions {
   /// For each of `plates`, the number of `mountings` in which it is shown, counted from the first one; empty: all.
   std::vector<std::size_t> mountings_per_plate{};
   std::vector<double> delta_t_k;
-  int phases = 16;                              ///< sub-pixel shifts per plate, mounting and contrast
-  double pixel_mm = 1;                          ///< one pixel on the plate; shifts are spread over one pixel in x and y
-  double pixel_aspect = 1;                      ///< ratio of height to width of a pixel; the width is pixel_mm
-  double change_cost_s[4] = {60, 30, 20, 0.1};  ///< plate, mounting, contrast, shift
+  int phases = 16;          ///< sub-pixel shifts per plate, mounting and contrast
+  double pixel_mm = 1;      ///< size of a pixel on the plate; shifts are spread over one pixel in x and y
+  double pixel_aspect = 1;  ///< ratio of height to width of a pixel; the width is pixel_mm
+  /// Time in s for a change of plate, mounting, contrast and shift.
+  double change_cost_s[4] = {60, 30, 20, 0.1};
   /// Returns whether the plate is shown in the mounting, by their indices.
   [[nodiscard]] bool shows(std::size_t plate, std::size_t mounting) const {
     return mountings_per_plate.empty() || mounting < mountings_per_plate[plate];
@@ -66,10 +67,10 @@ struct ConstantStimuliOptions {
 /// every count (additive recurrence with the plastic number, Roberts 2018).
 [[nodiscard]] std::vector<cv::Point2d> spread_phases(int count, const RandomStream& stream);
 
-/// Returns presentations, nested so that the slowest change occurs least often. Within a contrast group the highest
-/// contrast comes first, because the plate is registered there. Ties keep the order plate, mounting, contrast, shift.
-/// The shifts come from even_phases(). They are spread over all mountings together if a shift is cheaper than a
-/// mounting. Each plate and contrast has a random start within the pixel.
+/// Returns presentations, nested so that the most expensive change occurs least often. Changes with equal costs have
+/// the order plate, mounting, contrast, shift. Within a group of contrasts the highest contrast is first, because the
+/// plate is registered at this contrast. The shifts are those of even_phases(). If a shift costs less than a mounting,
+/// they are spread evenly over all mountings together. Each plate and contrast has a random start within the pixel.
 [[nodiscard]] std::vector<TargetState> constant_stimuli(const ConstantStimuliOptions& options,
                                                         const RandomStream& stream);
 
