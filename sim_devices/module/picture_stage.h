@@ -27,7 +27,7 @@ class ChainStage {
   [[nodiscard]] virtual Result<cv::Mat1f> process(const cv::Mat1f& picture) = 0;
   /// Returns the number of pictures after which an earlier scene contributes less than 0.1 %.
   [[nodiscard]] virtual int memory_frames() const { return 0; }
-  /// Returns the number of samples of the result per sample of the picture and axis.
+  /// Returns the number of output samples per input sample along each axis.
   [[nodiscard]] virtual int samples_per_pixel() const { return 1; }
   /// Returns the position of sample (0, 0) of the last result, in samples of the picture.
   [[nodiscard]] virtual cv::Point2d first_px() const { return {0, 0}; }
@@ -44,9 +44,9 @@ class ChainStage {
 [[nodiscard]] std::unique_ptr<ChainStage> sharpening(double amount);
 /// Returns the sum over the 3 x 3 neighbourhood, weighted by the kernel (rows first), with edges repeated.
 [[nodiscard]] std::unique_ptr<ChainStage> kernel_filter(const std::array<double, 9>& kernel);
-/// Returns a gain control to 8 bits: equalisation by the whole histogram with one class per count. At most
-/// `plateau_counts` pixels of a class are counted (0: no limit). The result is the grey level floor(255 c + 1/2), 0 to
-/// 255, where c is the share of the clipped histogram up to and including the count.
+/// Returns a gain control with 8-bit output: histogram equalisation over the whole picture, one class per count. At
+/// most `plateau_counts` pixels of a class are counted (0: no limit). The result is the grey level floor(255 c + 1/2),
+/// 0 to 255, where c is the share of the clipped histogram up to and including the count.
 [[nodiscard]] std::unique_ptr<ChainStage> gain_control(int plateau_counts);
 /// Returns the median over 3 x 3 or 5 x 5. Precondition: size is 3 or 5.
 [[nodiscard]] std::unique_ptr<ChainStage> median_filter(int size);

@@ -187,7 +187,7 @@ struct SourceSizeMeasure {
   int frames = 0;
   /// Set contrast.
   double set_delta_t_k = 0;
-  /// Contrast reported by the target, minus the contrast that it reports without contrast.
+  /// Contrast reported by the target at the set contrast, minus the contrast that it reports at a set-point of 0.
   double said_delta_t_k = 0;
   /// Side of the square source whose loss is stated.
   double stated_px = 0;
@@ -219,7 +219,7 @@ struct PlateView {
   double temporal_noise_k = 0;
 };
 
-/// Picture of the plate by the camera, and by the sensor model at the same position.
+/// Pictures of the plate: from the camera, and from the sensor model with the plate at the same position.
 struct PlatePicture {
   /// Picture by the camera.
   PlateView seen;

@@ -86,24 +86,27 @@ inline constexpr double transfer_false_alarm = 0.005;
 /// Returns the relative change of the signal transfer between the first set-ups and the later set-ups. Every division
 /// of the run into first and later set-ups is tested. The change with the largest ratio to its limit is returned. A
 /// set-up with several contrasts contributes the difference of its lowest and highest contrast for each triangle. In
-/// this difference, fixed pattern, row noise and column noise cancel. For a set-up with one contrast, the error
-/// includes a pattern common to its triangles, as large as the scatter of one triangle. A set-up is excluded if its
-/// contrasts span less than half of the widest span. The error contains the pooled scatter of the triangles within the
-/// set-ups (Student's t) and transfer_systematic_u. The probability of a false alarm is shared among the divisions.
-/// Empty with fewer than two set-ups, or if no set-up has two triangles.
+/// this difference, fixed pattern, row noise and column noise cancel. If a set-up has one contrast, the error also
+/// includes a pattern that all its triangles share. Its standard deviation is set to the scatter of one triangle. A
+/// set-up is excluded if its contrasts span less than half of the widest span. The error contains the pooled scatter of
+/// the triangles within the set-ups (Student's t) and transfer_systematic_u. The probability of a false alarm is shared
+/// among the divisions. Empty with fewer than two set-ups, or if no set-up has two triangles.
 [[nodiscard]] std::optional<ConstancyFigure> transfer_change(std::span<const ContrastMeasurement> measurements);
 
 /// Returns the change of the noise: ln (noise of a later average / noise of the first average at the same contrast).
 /// The change with the largest ratio to its limit is returned, over all contrasts and later averages. The limit is
-/// constancy_errors standard errors, at least most_noise_change. With N frames, the mean square of the N - 1 successive
-/// differences has the relative variance (3 N - 4) / (N - 1)^2 / n for white noise. For noise with memory the variance
-/// is smaller. n is the number of independent samples of a frame. If whole lines cause half of the variance, 1/n = 1/(4
-/// L) + 1/(4 L^2), where L is the number of rows or of columns, whichever is smaller. For contrasts in grey levels the
-/// noise is relative to the contrast, so a change of the gain does not change it. The limit then contains a further
-/// term, added in quadrature: the error of the quotient of the two contrasts, times Student's t. The false-alarm
-/// probability of this t is transfer_false_alarm, shared among the averages. As in transfer_change(), the error
-/// contains transfer_systematic_u and the scatter of a triangle, pooled over the averages of the contrast. The scatter
-/// is counted twice: for the mean over the triangles of each average, and for a pattern common to these triangles.
+/// constancy_errors standard errors, at least most_noise_change.
+///
+/// n is the number of independent samples of a frame. Whole lines are assumed to cause half of the variance:
+/// 1/n = 1/(4 L) + 1/(4 L^2), L is the smaller of the numbers of rows and columns. For N frames of white noise, the
+/// mean square of the N - 1 successive differences has the relative variance (3 N - 4) / ((N - 1)^2 n). For noise with
+/// memory the variance is smaller.
+///
+/// Grey levels: the noise is relative to the contrast, so a change of the gain does not change it. The limit then
+/// contains a further term, added in quadrature: the error of the quotient of the two contrasts, times Student's t for
+/// the probability transfer_false_alarm, which the averages share. As in transfer_change(), this error contains
+/// transfer_systematic_u and the scatter of a triangle, pooled over the averages of the contrast. The scatter is
+/// counted twice: for the mean over the triangles of each average, and for a pattern common to these triangles.
 [[nodiscard]] std::optional<ConstancyFigure> noise_change(std::span<const PictureNoise> noise);
 inline constexpr double most_noise_change = 0.1397619;  ///< ln 1.15; five errors of 16 frames of 120 lines: 7 %
 inline constexpr double constancy_errors = 5;

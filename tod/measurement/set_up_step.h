@@ -59,7 +59,7 @@ struct SeenContrast {
   std::optional<PlaceFit> large{};
 };
 
-/// Returns a message for a contrast that was observed without the sign of its set-point. The message states one of
+/// Returns a message for an observed contrast that does not have the sign of its set-point. The message states one of
 /// three reasons: the contrast is below one count of the camera (`kelvin_per_count`, if known), it does not exceed
 /// three standard errors, or the target or the camera has the wrong sign.
 [[nodiscard]] std::string unexpected_sign(double set_k, const EffectiveContrast& observed, ContrastUnit unit,
@@ -123,7 +123,7 @@ class SetUpStep {
   /// Returns the lag-1 correlation of the noise; empty: too few frames.
   [[nodiscard]] std::optional<double> lag1_correlation() const { return lag1_correlation_; }
 
-  /// Returns the data for the tests of whether the camera remained constant, from the averages taken until now.
+  /// Returns the data for the constancy tests, from the averages taken so far.
   [[nodiscard]] const RunConstancy& constancy() const { return constancy_; }
 
  private:

@@ -80,7 +80,7 @@ struct LikelihoodScan {
 };
 /// Scans the whole domain. The spacing of the thresholds is a fixed part of the width of the function at each slope.
 /// Thresholds are placed around every level, between neighbouring levels, below the lowest level and above the highest
-/// level. Steps between two levels and ridges outside the levels are therefore found.
+/// level. The scan therefore finds ridges outside the levels, and steps that lie between two levels.
 [[nodiscard]] LikelihoodScan scan_likelihood(const PooledCounts& counts, const ScanGrid& grid);
 
 /// Returns the maximum over the domain. `scan`: scan of the same counts, from which the Newton steps start. If the

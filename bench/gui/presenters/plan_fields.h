@@ -65,7 +65,7 @@ struct PlanField {
 /// Returns the reason why a field has no effect in a plan; empty: it has an effect.
 [[nodiscard]] QString idle_reason(const PlanField& field, const Plan& plan);
 
-/// Returns the keys that have a line, in the order of the table (bench/plan/plan_key_table.cpp).
+/// Returns one field for each key that has a line, in the order of the table (bench/plan/plan_key_table.cpp).
 [[nodiscard]] std::vector<PlanField> plan_fields();
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// UTF-8 text as text of Qt.
+// Converts UTF-8 text to QString.
 #pragma once
 
 #include <QString>
