@@ -180,6 +180,23 @@ void move_to_next_page(QTextDocument& document, const QTextBlock& block) {
   format.setTopMargin(old.topMargin() + (std::floor(before) + 1 - before) * height);
   QTextCursor(moved).setBlockFormat(format);
   lay_out_from(document, moved.position());
+  if (std::floor(top() + rounding) > std::floor(before)) return;
+  // The margin below a table covers the margin above the block: the table moves with its headings.
+  QTextBlock above = moved.previous();
+  while (above.isValid() && above.text().trimmed().isEmpty() && table_at(above) == nullptr) above = above.previous();
+  QTextTable* const table = above.isValid() ? table_at(above) : nullptr;
+  if (table == nullptr) return;
+  const QTextBlock heading = with_headings(table->firstCursorPosition().block());
+  if (table_at(heading) == nullptr) {
+    QTextBlockFormat first = heading.blockFormat();
+    first.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+    QTextCursor(heading).setBlockFormat(first);
+  } else {
+    QTextTableFormat whole = table->format();
+    whole.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+    table->setFormat(whole);
+  }
+  lay_out_from(document, heading.position());
 }
 
 /// Moves a heading, caption or figure at the bottom of a page to the next one, together with its content.
