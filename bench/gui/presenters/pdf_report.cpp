@@ -49,6 +49,13 @@ QTextBlock content_after(QTextBlock block) {
   return block;
 }
 
+/// Returns the block with content before this one.
+QTextBlock content_before(QTextBlock block) {
+  do block = block.previous();
+  while (block.isValid() && block.text().trimmed().isEmpty());
+  return block;
+}
+
 /// Returns the lowest block of a row, over all cells.
 QTextBlock lowest_of(const QTextDocument& document, const QTextTable& table, int row) {
   QTextBlock lowest = table.cellAt(row, 0).lastCursorPosition().block();
@@ -81,14 +88,31 @@ void lay_out_from(QTextDocument& document, int position) {
   document.markContentsDirty(position, document.characterCount() - position);
 }
 
-/// Moves a table of one row (figures side by side, or the verdict) to the next page if it would be split.
-void keep_row_together(QTextDocument& document, QTextTable& table) {
-  const QTextBlock first = table.firstCursorPosition().block();
-  if (table.rows() > 1 || page_of(document, first) == page_of(document, lowest_of(document, table, 0))) return;
+/// Starts a new page before a table.
+void break_before(QTextDocument& document, QTextTable& table) {
   QTextTableFormat format = table.format();
   format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
   table.setFormat(format);
   lay_out_from(document, table.firstPosition());
+}
+
+void set_format(QTextDocument& document, const QTextBlock& block, const QTextBlockFormat& format) {
+  QTextCursor(block).setBlockFormat(format);
+  lay_out_from(document, block.position());
+}
+
+/// Starts a new page before a block outside of tables.
+void break_before(QTextDocument& document, const QTextBlock& block) {
+  QTextBlockFormat format = block.blockFormat();
+  format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
+  set_format(document, block, format);
+}
+
+/// Moves a table of one row (figures side by side, or the verdict) to the next page if it would be split.
+void keep_row_together(QTextDocument& document, QTextTable& table) {
+  const QTextBlock first = table.firstCursorPosition().block();
+  if (table.rows() > 1 || page_of(document, first) == page_of(document, lowest_of(document, table, 0))) return;
+  break_before(document, table);
 }
 
 /// Top and bottom of the text of a row, in the height of all pages.
@@ -145,8 +169,7 @@ void keep_rows_whole(QTextDocument& document, QTextTable& table) {
 
 /// Returns the first of the headings directly above a block; they move to the next page with it.
 QTextBlock with_headings(const QTextBlock& block) {
-  QTextBlock above = block.previous();
-  while (above.isValid() && above.text().trimmed().isEmpty()) above = above.previous();
+  const QTextBlock above = content_before(block);
   const bool heading = above.isValid() && table_at(above) == nullptr && above.blockFormat().headingLevel() > 0;
   return heading ? with_headings(above) : block;
 }
@@ -163,40 +186,33 @@ bool is_cut(const QTextDocument& document, const QTextBlock& block) {
   return false;
 }
 
+/// Starts a new page before a table, or before the headings above it.
+void move_to_next_page(QTextDocument& document, QTextTable& table) {
+  const QTextBlock first = table.firstCursorPosition().block(), heading = with_headings(first);
+  if (heading == first)
+    break_before(document, table);
+  else
+    break_before(document, heading);
+}
+
 void move_to_next_page(QTextDocument& document, const QTextBlock& block) {
   const QTextBlock moved = with_headings(block);
   const double height = document.pageSize().height();
   const auto top = [&] { return document.documentLayout()->blockBoundingRect(moved).top() / height; };
   const double before = top();
   const QTextBlockFormat old = moved.blockFormat();
-  QTextBlockFormat format = old;
-  format.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
-  QTextCursor(moved).setBlockFormat(format);
-  lay_out_from(document, moved.position());
+  break_before(document, moved);
   // A block in the last millimetres of a page has been moved by Qt already: a break would leave an empty page.
   constexpr double rounding = 0.001;
   if (std::floor(top() + rounding) <= std::floor(before) + 1) return;
-  format = old;
+  QTextBlockFormat format = old;
   format.setTopMargin(old.topMargin() + (std::floor(before) + 1 - before) * height);
-  QTextCursor(moved).setBlockFormat(format);
-  lay_out_from(document, moved.position());
+  set_format(document, moved, format);
   if (std::floor(top() + rounding) > std::floor(before)) return;
   // The margin below a table covers the margin above the block: the table moves with its headings.
-  QTextBlock above = moved.previous();
-  while (above.isValid() && above.text().trimmed().isEmpty() && table_at(above) == nullptr) above = above.previous();
-  QTextTable* const table = above.isValid() ? table_at(above) : nullptr;
-  if (table == nullptr) return;
-  const QTextBlock heading = with_headings(table->firstCursorPosition().block());
-  if (table_at(heading) == nullptr) {
-    QTextBlockFormat first = heading.blockFormat();
-    first.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
-    QTextCursor(heading).setBlockFormat(first);
-  } else {
-    QTextTableFormat whole = table->format();
-    whole.setPageBreakPolicy(QTextFormat::PageBreak_AlwaysBefore);
-    table->setFormat(whole);
-  }
-  lay_out_from(document, heading.position());
+  const QTextBlock above = content_before(moved);
+  if (QTextTable* table = above.isValid() ? table_at(above) : nullptr; table != nullptr)
+    move_to_next_page(document, *table);
 }
 
 /// Moves a heading, caption or figure at the bottom of a page to the next one, together with its content.

@@ -118,7 +118,7 @@ TEST_F(PdfReport, LosesNoHeadingWhereverItsPagesBreak) {
     cost.points.push_back({.knob = knob, .setting = "1", .wall_s = 0.1, .error_percent = 0.5});
   report.cost = cost;
   // Rows of a table before everything else: headings come to the foot of a page one after the other. A document takes
-  // 7 s; four of them break at some thirty positions.
+  // some seconds; the four have 18 page breaks.
   for (int rows = 0; rows < 44; rows += 11) {
     report.conditions.assign(static_cast<std::size_t>(rows), {"Room temperature (K)", "295"});
     ASSERT_TRUE(write_pdf_report(report, file));
