@@ -32,6 +32,11 @@ tl::unexpected<Error> refused(const std::filesystem::path& file, std::string_vie
   return fail(ErrorCode::io, file.string() + ": " + std::string(doing) + ": " + reason);
 }
 
+/// What a path is that exists and is not a regular file.
+std::string other_than_file(bool folder) {
+  return folder ? "it is a folder" : "it is a pipe, a socket or a device";
+}
+
 /// Empty if the system has no random bits.
 std::string random_text() {
   std::uint64_t bits = 0;
@@ -119,15 +124,13 @@ Result<int> open_to_read(const std::filesystem::path& file) {
   struct ::stat found {};
   if (may_wait || (::fstat(descriptor, &found) == 0 && S_ISREG(found.st_mode))) return descriptor;
   ::close(descriptor);
-  return refused(file, "cannot be opened for reading",
-                 S_ISDIR(found.st_mode) ? "it is a folder" : "it is a pipe, a socket or a device");
+  return refused(file, "cannot be opened for reading", other_than_file(S_ISDIR(found.st_mode)));
 }
 
-std::string_view no_file_reason(const std::filesystem::path& file) {
+std::string no_file_reason(const std::filesystem::path& file) {
   std::error_code problem;
   const auto status = std::filesystem::status(file, problem);
-  if (!std::filesystem::exists(status)) return "no such file";
-  return std::filesystem::is_directory(status) ? "it is a folder" : "it is a pipe, a socket or a device";
+  return std::filesystem::exists(status) ? other_than_file(std::filesystem::is_directory(status)) : "no such file";
 }
 
 int write_all(int descriptor, std::string_view content) {

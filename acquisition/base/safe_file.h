@@ -38,7 +38,7 @@ struct NewFile {
 
 /// Returns the reason why a path is not a regular file: "no such file", "it is a folder" or "it is a pipe, a socket or
 /// a device".
-[[nodiscard]] std::string_view no_file_reason(const std::filesystem::path& file);
+[[nodiscard]] std::string no_file_reason(const std::filesystem::path& file);
 
 /// Writes all of `content`, even if writes are interrupted or partial. Returns 0 or the error number.
 [[nodiscard]] int write_all(int descriptor, std::string_view content);

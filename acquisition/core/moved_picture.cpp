@@ -47,6 +47,13 @@ ShiftedDifference difference(const cv::Mat1w& a, const cv::Mat1w& b, int shift, 
   return {sum / n, std::sqrt(std::max(0.0, squares - sum * sum / n)) / sum};
 }
 
+/// Returns the difference of rearranged pictures relative to that of the same pixels as they are. Infinite if the
+/// errors of the latter explain it.
+double ratio_of(const ShiftedDifference& rearranged, const ShiftedDifference& as_it_is) {
+  const double ratio = rearranged.mean / as_it_is.mean;
+  return ratio < 1 - put_right_errors * as_it_is.relative_error ? ratio : HUGE_VAL;
+}
+
 int step_for(const cv::Mat1w& picture) {
   return std::max(1, static_cast<int>(static_cast<double>(picture.total()) / wanted_samples));
 }
@@ -66,15 +73,15 @@ struct RowShift {
   double ratio = HUGE_VAL;
 };
 
-/// Returns the shift with the least difference. A ratio that the errors of the difference explain is infinite.
+/// Returns the shift with the least difference.
 RowShift best_shift(const cv::Mat1w& a, const cv::Mat1w& b, double level) {
   const int step = step_of_columns(a);
   // Of the same columns: a row of telemetry is one of the columns of a transposed picture.
   const ShiftedDifference as_it_is = difference(a, b, 0, step, level);
   RowShift best;
   for (int shift = least_shift; shift <= a.rows - least_shift; ++shift) {
-    const double ratio = difference(a, b, shift, step, level).mean / as_it_is.mean;
-    if (ratio < best.ratio && ratio < 1 - put_right_errors * as_it_is.relative_error) best = {shift, ratio};
+    const double ratio = ratio_of(difference(a, b, shift, step, level), as_it_is);
+    if (ratio < best.ratio) best = {shift, ratio};
   }
   return best;
 }
@@ -131,11 +138,8 @@ std::optional<std::string> MovedPicture::see(const cv::Mat1w& counts) {
     propose(rows.ratio, "it wraps around vertically, shifted by " + std::to_string(rows.rows) + " px");
     const RowShift columns = best_shift(counts.t(), reference_.t(), level);
     propose(columns.ratio, "it wraps around horizontally, shifted by " + std::to_string(columns.rows) + " px");
-    const double least_errors = 1 - put_right_errors * as_it_is.relative_error;
-    for (const Turned& other : turned(counts)) {
-      const double ratio = difference(other.picture, reference_, 0, step, level).mean / as_it_is.mean;
-      if (ratio < least_errors) propose(ratio, other.words);
-    }
+    for (const Turned& other : turned(counts))
+      propose(ratio_of(difference(other.picture, reference_, 0, step, level), as_it_is), other.words);
   }
   ++compared_;
   if (found) return found;

@@ -32,7 +32,7 @@ Result<PictureFile> read_picture(const std::filesystem::path& path) {
     return fail(ErrorCode::invalid_input, path.string() + ": " + sentence);
   };
   std::error_code problem;
-  if (!std::filesystem::is_regular_file(path, problem)) return wrong(std::string(no_file_reason(path)));
+  if (!std::filesystem::is_regular_file(path, problem)) return wrong(no_file_reason(path));
   const std::uintmax_t size = std::filesystem::file_size(path, problem);
   if (problem) return wrong(problem.message());
   if (size == 0) return wrong("the file is empty");

@@ -146,7 +146,7 @@ Result<Recording> open_recording(const std::filesystem::path& path, const std::s
   std::error_code error;
   const bool folder = std::filesystem::is_directory(path, error);
   if (!folder && !std::filesystem::is_regular_file(path, error))
-    return fail(ErrorCode::not_found, path.string() + ": " + std::string(no_file_reason(path)));
+    return fail(ErrorCode::not_found, path.string() + ": " + no_file_reason(path));
   const FileContent content = folder ? FileContent{FileKind::tiff} : content_of_file(path);
   const bool own_format = content.kind == FileKind::frame_stream || content.kind == FileKind::flir;
   if (!query.empty() && own_format)

@@ -92,7 +92,7 @@ std::vector<std::string> paragraphs_in(TomlReader& file, std::string_view key) {
 Result<std::string> logo_in(const std::filesystem::path& file) {
   std::error_code problem;
   if (!std::filesystem::is_regular_file(file, problem))
-    return fail(ErrorCode::invalid_input, file.string() + ": " + std::string(no_file_reason(file)));
+    return fail(ErrorCode::invalid_input, file.string() + ": " + no_file_reason(file));
   const auto size = std::filesystem::file_size(file, problem);
   if (problem || size > most_png_bytes)
     return fail(ErrorCode::invalid_input, file.string() + ": the logo must have at most 512 KiB");
