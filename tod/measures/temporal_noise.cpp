@@ -53,17 +53,27 @@ struct AtLag {
   double pixels = 0;  ///< without the change of the whole frame
 };
 
-AtLag at_lag(std::span<const TimedPicture> pictures, const std::vector<Pair>& pairs, const cv::Mat1b& usable) {
-  AtLag out;
+/// The same of each pair.
+std::vector<AtLag> of_pairs(std::span<const TimedPicture> pictures, const std::vector<Pair>& pairs,
+                            const cv::Mat1b& usable) {
+  std::vector<AtLag> out;
   for (const auto& [first, later] : pairs) {
     const cv::Mat1f difference = pictures[later].picture - pictures[first].picture;
     cv::Scalar mean, sd;
     cv::meanStdDev(difference, mean, sd, usable);
-    out.all += (mean[0] * mean[0] + sd[0] * sd[0]) / 2;
-    out.pixels += sd[0] * sd[0] / 2;
+    out.push_back({(mean[0] * mean[0] + sd[0] * sd[0]) / 2, sd[0] * sd[0] / 2});
+  }
+  return out;
+}
+
+AtLag mean_of(const std::vector<AtLag>& pairs) {
+  AtLag sum;
+  for (const AtLag& pair : pairs) {
+    sum.all += pair.all;
+    sum.pixels += pair.pixels;
   }
   const auto count = static_cast<double>(pairs.size());
-  return {out.all / count, out.pixels / count};
+  return {sum.all / count, sum.pixels / count};
 }
 
 /// Mean over pairs of frames and its squared standard error from the scatter between them.
@@ -79,26 +89,21 @@ OverPairs over_pairs(std::span<const double> of_pair) {
   return {mean, squares / (count - 1) / count};
 }
 
-/// Whether the mean squares at the shortest lag differ between the first and the second half of the pairs.
-bool halves_differ(std::span<const TimedPicture> pictures, const std::vector<Pair>& pairs, const cv::Mat1b& usable) {
+/// Whether the mean squares of the shortest lag differ between the first and the second half of the pairs. A line of
+/// the picture is one sample.
+bool halves_differ(const std::vector<AtLag>& pairs, cv::Size picture) {
   constexpr std::size_t least_pairs = 8;
-  constexpr double least_ratio = 1.15, by_chance = 1e-9, standard_errors = 5;
+  constexpr double standard_errors = 5;
   if (pairs.size() < least_pairs) return false;
-  std::vector<double> of_pair;
-  for (const Pair& pair : pairs) of_pair.push_back(at_lag(pictures, {pair}, usable).pixels);
-  const std::size_t half = pairs.size() / 2;
-  const OverPairs before = over_pairs(std::span(of_pair).first(half)),
-                  after = over_pairs(std::span(of_pair).last(half));
-  if (!(before.mean > 0 && after.mean > 0)) return before.mean != after.mean;
+  std::vector<double> squares;
+  for (const AtLag& pair : pairs) squares.push_back(pair.pixels);
+  const std::size_t half = squares.size() / 2;
+  const OverPairs before = over_pairs(std::span(squares).first(half)),
+                  after = over_pairs(std::span(squares).last(half));
   const double error = std::sqrt(before.squared_error + after.squared_error);
-  if (std::abs(after.mean - before.mean) <= standard_errors * error) return false;
-  // A line is one sample. Differences that share a frame have a correlation of -1/2, which raises the variance of their
-  // mean square by 3/2.
-  const double lines = std::max(1, std::min(usable.rows, usable.cols) - 1);
-  const double freedom = lines * static_cast<double>(half) / 1.5;
-  const double ratio = std::max(before.mean, after.mean) / std::min(before.mean, after.mean);
-  return ratio > least_ratio &&
-         cdf(distribution::complement(distribution::FisherF(freedom, freedom), ratio)) < by_chance;
+  const double lines = std::max(1, std::min(picture.height, picture.width) - 1);
+  return std::abs(after.mean - before.mean) > standard_errors * error &&
+         mean_squares_differ(before.mean, after.mean, lines * static_cast<double>(half));
 }
 
 /// Pixels whose noise is above twice the median pixel's at a short or at a longer lag show a moving scene; one that
@@ -135,6 +140,16 @@ bool level_stays_changed(std::span<const double> before, std::span<const double>
   for (const double level : behind) squares += (level - high) * (level - high);
   const auto n = static_cast<double>(before.size()), m = static_cast<double>(behind.size());
   return std::abs(high - low) > standard_errors * std::sqrt(squares / (n + m - 2) * (1 / n + 1 / m));
+}
+
+bool mean_squares_differ(double before, double after, double samples) {
+  constexpr double least_ratio = 1.15, by_chance = 1e-9;
+  if (!(before > 0 && after > 0)) return before != after;
+  // The correlation of differences that share a frame raises the variance of their mean square by 3/2.
+  const double freedom = samples / 1.5;
+  const double ratio = std::max(before, after) / std::min(before, after);
+  return ratio > least_ratio &&
+         cdf(distribution::complement(distribution::FisherF(freedom, freedom), ratio)) < by_chance;
 }
 
 double first_order_correlation(double ratio, int lag) {
@@ -176,12 +191,13 @@ Result<TemporalNoise> temporal_noise(std::span<const TimedPicture> pictures) {
   const int base = pairs.begin()->first;
   std::map<int, AtLag> at;
   for (const auto& [lag, of_lag] : pairs) {
-    at[lag] = at_lag(pictures, of_lag, noise.usable);
+    const std::vector<AtLag> each = of_pairs(pictures, of_lag, noise.usable);
+    if (lag == base) noise.changes = halves_differ(each, noise.usable.size());
+    at[lag] = mean_of(each);
     noise.lags.push_back(lag);
     noise.structure.push_back(std::sqrt(at[lag].all));
   }
   noise.successive = noise.structure.front();
-  noise.changes = halves_differ(pictures, pairs.at(base), noise.usable);
   if (!(noise.successive > 0))
     return fail(ErrorCode::invalid_input, "there is no noise: successive frames are identical");
   if (at[base].pixels > 0) {

@@ -62,6 +62,12 @@ inline constexpr int longest_lag = 64;
 /// before or after the jump.
 [[nodiscard]] bool level_stays_changed(std::span<const double> before, std::span<const double> behind);
 
+/// Returns whether two mean squares of successive differences have a ratio above 1.15 (7 % of the noise), and above the
+/// value that chance exceeds in less than 1e-9 of all recordings. `samples`: number of differences in each mean square
+/// that are independent except for common frames, whose correlation of -1/2 is taken into account. If one mean square
+/// is 0, any other value differs.
+[[nodiscard]] bool mean_squares_differ(double before, double after, double samples);
+
 /// Returns the lag-1 correlation rho of noise of first order (Box and Jenkins 1970, 3.2.3). `ratio`: squared structure
 /// function at `lag` >= 2, divided by that at lag 1. rho is the root of 1 + rho + ... + rho^(lag - 1) = ratio in [-1,
 /// 1]. The mean and the variance over the sequence have no effect on rho, and slow drift has little effect.

@@ -8,6 +8,7 @@
 
 #include "acquisition/base/distributions.h"
 #include "acquisition/base/try.h"
+#include "tod/measures/temporal_noise.h"
 
 namespace todbench {
 namespace {
@@ -342,13 +343,7 @@ bool NoiseCube::noise_changes() const {
     return std::accumulate(steps.begin(), steps.end(), 0.0) / static_cast<double>(steps.size());
   };
   const double before = mean(std::span(steps_).first(half)), after = mean(std::span(steps_).last(half));
-  if (!(before > 0 && after > 0)) return before != after;
-  constexpr double least_ratio = 1.15, by_chance = 1e-9;
-  // Differences that share a frame have a correlation of -1/2: the variance of their mean square is 3/2 times that of
-  // as many independent ones.
-  const double freedom = (first_.rows - 1.0) * (first_.cols - 1.0) * static_cast<double>(half) / 1.5;
-  const double ratio = std::max(before, after) / std::min(before, after);
-  return ratio > least_ratio && cdf(complement(distribution::FisherF(freedom, freedom), ratio)) < by_chance;
+  return mean_squares_differ(before, after, (first_.rows - 1.0) * (first_.cols - 1.0) * static_cast<double>(half));
 }
 
 std::optional<int> NoiseCube::row_outside_picture() const {
