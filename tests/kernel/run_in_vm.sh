@@ -64,5 +64,5 @@ timeout 1500 qemu-system-x86_64 -M q35 -accel tcg,thread=multi -cpu max -smp 2 -
   -kernel kernel/boot/vmlinuz-"$version" -initrd initramfs.gz \
   -append "console=ttyS0 quiet panic=-1 random.trust_cpu=on rdinit=/init" </dev/null >console.log 2>&1 || true
 grep -q "TODBENCH-EXIT" console.log || { tail -n 40 console.log; echo "the virtual machine did not come to its end"; exit 1; }
-grep -E "^\[ *(RUN|OK|FAILED|PASSED|=+|-+) *\]|Failure|Expected|Actual|error|\.cpp:" console.log | tr -d '\r' || true
+grep -E "^\[ *(RUN|OK|FAILED|PASSED|=+|-+) *\]|Failure|Expected|Actual|Which is|exposure|error|\.cpp:" console.log | tr -d '\r' || true
 grep -q "TODBENCH-EXIT 0" console.log
