@@ -11,6 +11,10 @@ namespace todbench {
 /// Bit-identical on every instruction set.
 void block_product(const float* values, const float* factors, std::size_t count, float* sums);
 
+/// block_product() of two sets of factors. The values are read only once. Bit-identical to two calls.
+void block_products(const float* values, const std::array<const float*, 2>& factors, std::size_t count,
+                    const std::array<float*, 2>& sums);
+
 /// Number of sets of factors in one call of add_block_products().
 inline constexpr std::size_t products_at_once = 4;
 /// Adds the products of block_product() to the sums of several sets of factors. The values are read only once. If the

@@ -154,7 +154,10 @@ void TemplateBank::project_all(std::span<const std::span<const float>> patches,
       }
       add_block_products(values, factors, count, sums);
     }
-    for (; k < patches.size(); ++k) block_product(values, patches[k].data(), count, scores[k].data() + b * block);
+    for (; k + 2 <= patches.size(); k += 2)
+      block_products(values, {patches[k].data(), patches[k + 1].data()}, count,
+                     {scores[k].data() + b * block, scores[k + 1].data() + b * block});
+    if (k < patches.size()) block_product(values, patches[k].data(), count, scores[k].data() + b * block);
   }
 }
 

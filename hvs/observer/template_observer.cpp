@@ -69,6 +69,13 @@ void scale_to_background(const Patch& patch, double contrast_k, std::span<float>
   for (const double value : kelvin) signal[s++] = static_cast<float>((value - surround) / contrast_k);
 }
 
+/// Adds white noise of standard deviation `sd` to the samples. `room` has as many numbers as samples.
+void add_own_noise(double sd, const RandomStream& noise, std::span<float> samples, std::span<float> room) {
+  if (!(sd > 0)) return;
+  noise.fill_normal(room);
+  for (std::size_t s = 0; s < samples.size(); ++s) samples[s] += static_cast<float>(sd) * room[s];
+}
+
 void scale_patch(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k, std::span<float> signal) {
   if (spec.eye) {
     scale_to_background(patch, contrast_k, signal);
@@ -86,49 +93,65 @@ class PreparedTemplateObserver final : public PreparedObserver {
   [[nodiscard]] double search_samples() const override { return spec_.search_range_samples; }
 
   [[nodiscard]] Choice choose(const Patch& patch, double contrast_k, const RandomStream& noise) const override {
-    const auto side = static_cast<std::size_t>(bank_->window_samples());
-    CV_Assert(patch.kelvin.rows == bank_->window_samples() && patch.kelvin.cols == bank_->window_samples());
-    if (side * side <= stack_samples && bank_->padded_templates() <= stack_templates) {
-      std::array<float, stack_samples> signal;
-      std::array<float, stack_samples> draws;
+    const std::size_t samples = samples_of(patch);
+    if (samples <= stack_samples && bank_->padded_templates() <= stack_templates) {
+      std::array<float, stack_samples> signal, draws;
       std::array<float, stack_templates> scores;
-      return decide(patch, contrast_k, noise, std::span(signal).first(side * side), std::span(draws).first(side * side),
+      return decide(patch, contrast_k, noise, std::span(signal).first(samples), std::span(draws).first(samples),
                     std::span(scores).first(bank_->padded_templates()));
     }
-    std::vector<float> signal(side * side), draws(side * side), scores(bank_->padded_templates());
+    std::vector<float> signal(samples), draws(samples), scores(bank_->padded_templates());
     return decide(patch, contrast_k, noise, signal, draws, scores);
   }
 
   [[nodiscard]] GradedChoice judge(const Patch& patch, double contrast_k, const RandomStream& noise,
                                    int draws) const override {
-    const Choice choice = choose(patch, contrast_k, noise);
     const ScoreNoise& own = own_noise_of_scores();
-    const auto side = static_cast<std::size_t>(bank_->window_samples());
-    const std::size_t templates = bank_->padded_templates();
-    if (side * side <= stack_samples && templates <= stack_templates && own.size() <= stack_templates &&
+    const std::size_t samples = samples_of(patch), templates = bank_->padded_templates();
+    if (samples <= stack_samples && templates <= stack_templates && own.size() <= stack_templates &&
         own.rank() <= stack_samples) {
-      std::array<float, stack_samples> signal, direction;
+      std::array<float, stack_samples> signal, seen, direction;
       std::array<float, (products_at_once + 1) * stack_samples> numbers;
-      std::array<float, stack_templates> scores, rows, along;
-      return {choice, probabilities(patch, contrast_k, noise, draws, std::span(signal).first(side * side),
-                                    std::span(scores).first(templates),
-                                    {.rows = std::span(rows).first(own.size()),
-                                     .along = std::span(along).first(own.size()),
-                                     .numbers = std::span(numbers).first((products_at_once + 1) * own.rank()),
-                                     .direction = std::span(direction).first(own.rank())})};
+      std::array<float, stack_templates> scores, seen_scores, rows, along;
+      return grade(patch, contrast_k, noise, draws,
+                   {.signal = std::span(signal).first(samples),
+                    .seen = std::span(seen).first(samples),
+                    .noise = std::span(numbers).first(samples),
+                    .scores = std::span(scores).first(templates),
+                    .seen_scores = std::span(seen_scores).first(templates)},
+                   {.rows = std::span(rows).first(own.size()),
+                    .along = std::span(along).first(own.size()),
+                    .numbers = std::span(numbers).first((products_at_once + 1) * own.rank()),
+                    .direction = std::span(direction).first(own.rank())});
     }
-    std::vector<float> signal(side * side), scores(templates);
+    std::vector<float> signal(samples), seen(samples), pixel_noise(samples), scores(templates), seen_scores(templates);
     std::vector<float> rows(own.size()), along(own.size()), numbers((products_at_once + 1) * own.rank()),
         direction(own.rank());
-    return {choice, probabilities(patch, contrast_k, noise, draws, signal, scores,
-                                  {.rows = rows, .along = along, .numbers = numbers, .direction = direction})};
+    return grade(patch, contrast_k, noise, draws,
+                 {.signal = signal, .seen = seen, .noise = pixel_noise, .scores = scores, .seen_scores = seen_scores},
+                 {.rows = rows, .along = along, .numbers = numbers, .direction = direction});
   }
 
  private:
+  /// Memory of judge(): the patch without and with the observer's own noise, and the scores of both.
+  struct TwoPatches {
+    std::span<float> signal, seen, noise, scores, seen_scores;
+  };
+
+  [[nodiscard]] std::size_t samples_of(const Patch& patch) const {
+    CV_Assert(patch.kelvin.rows == bank_->window_samples() && patch.kelvin.cols == bank_->window_samples());
+    return patch.kelvin.total();
+  }
+
   [[nodiscard]] Choice decide(const Patch& patch, double contrast_k, const RandomStream& noise, std::span<float> signal,
                               std::span<float> draws, std::span<float> scores) const {
     seen_patch(spec_, patch, contrast_k, noise, signal, draws);
     bank_->project(signal, scores);
+    return choice_of(scores, contrast_k, noise);
+  }
+
+  /// The answer to a patch by its scores. Adds the noise of the eye to the scores.
+  [[nodiscard]] Choice choice_of(std::span<float> scores, double contrast_k, const RandomStream& noise) const {
     if (const EyeNoise* eye = bank_->eye(); eye != nullptr) {
       std::array<float, stack_templates> numbers;
       std::vector<float> many(eye->rank() > numbers.size() ? eye->rank() : 0);
@@ -147,14 +170,19 @@ class PreparedTemplateObserver final : public PreparedObserver {
     return choice;
   }
 
-  [[nodiscard]] AnswerProbabilities probabilities(const Patch& patch, double contrast_k, const RandomStream& noise,
-                                                  int draws, std::span<float> signal, std::span<float> scores,
-                                                  const AnswerRoom& room) const {
-    scale_patch(spec_, patch, contrast_k, signal);
-    bank_->project(signal, scores);
+  /// Both patches are projected together: the templates, which fill a cache, are read once.
+  [[nodiscard]] GradedChoice grade(const Patch& patch, double contrast_k, const RandomStream& noise, int draws,
+                                   const TwoPatches& room, const AnswerRoom& answers) const {
+    scale_patch(spec_, patch, contrast_k, room.signal);
+    std::copy(room.signal.begin(), room.signal.end(), room.seen.begin());
+    add_own_noise(own_noise(spec_, patch, contrast_k), noise, room.seen, room.noise);
+    bank_->project_all(std::array<std::span<const float>, 2>{room.signal, room.seen},
+                       std::array<std::span<float>, 2>{room.scores, room.seen_scores});
+    const Choice choice = choice_of(room.seen_scores, contrast_k, noise);
     const ScoreNoiseLevels levels{.white = own_noise(spec_, patch, contrast_k),
                                   .eye = bank_->eye() != nullptr ? bank_->eye()->sd(contrast_k) : 0};
-    return answer_probabilities(own_noise_of_scores(), scores, levels, noise.sub(graded_sub_stream), draws, room);
+    return {choice, answer_probabilities(own_noise_of_scores(), room.scores, levels, noise.sub(graded_sub_stream),
+                                         draws, answers)};
   }
 
   /// Created at the first graded answer: it costs as much as the bank, and most observers only choose.
@@ -175,10 +203,7 @@ class PreparedTemplateObserver final : public PreparedObserver {
 void seen_patch(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k, const RandomStream& noise,
                 std::span<float> seen, std::span<float> room) {
   scale_patch(spec, patch, contrast_k, seen);
-  const auto sd = static_cast<float>(own_noise(spec, patch, contrast_k));
-  if (!(sd > 0)) return;
-  noise.fill_normal(room);
-  for (std::size_t s = 0; s < seen.size(); ++s) seen[s] += sd * room[s];
+  add_own_noise(own_noise(spec, patch, contrast_k), noise, seen, room);
 }
 
 int winning_alternative(const Choice& choice, const RandomStream& noise) {
