@@ -56,8 +56,9 @@ struct TailBounds {
   /// Largest share of the contrast in the halos that are part of the MTF. If this bound alone determines an interval,
   /// the lower limit of the interval is not stated.
   double most_halo = 0.2;
-  double widest_pitch = 70;  ///< largest sigma of a halo that is part of the MTF
-  double most_wide = 0.5;    ///< largest share of the step in halos wider than widest_pitch
+  double widest_pitch = 70;    ///< largest sigma of a halo that is part of the MTF
+  double most_wide = 0.5;      ///< largest share of the step in halos wider than widest_pitch
+  double most_undershoot = 1;  ///< largest sum of the sizes of negative shares, relative to the step
 };
 /// Returns the bounds for a stated aperture: 0.9 to 1.8 times (4 / pi) wavelength f-number / pitch. Obscured pupils and
 /// aberrations can only increase the slope. The factor 0.9 allows for errors of the stated band and f-number.
@@ -72,10 +73,15 @@ struct TailBounds {
 [[nodiscard]] std::array<double, edge_tails::first_shading> tail_contrast(const TailBounds& bounds);
 
 /// Fit of the model to a picture outside the core of every edge.
+///
+/// Halos have positive shares: light is only spread. A filter that sharpens the picture adds negative shares. The fit
+/// permits them only if the picture shows them. The shares are then negative up to one sigma, which is at most
+/// TailBounds::widest_pitch, and positive above it. All results include every such sigma that the picture does not
+/// exclude.
 class TailFit {
  public:
   /// Returns the most likely values of the unknowns, in the order of the columns.
-  [[nodiscard]] const std::vector<double>& best() const { return problem_->best(); }
+  [[nodiscard]] const std::vector<double>& best() const { return families_.front().problem->best(); }
   /// Returns the values of the unknowns with the weakest tails among all values whose chi-square is at most 1 above the
   /// minimum. For an edge without tails, these values contain no tails.
   [[nodiscard]] const std::vector<double>& stated() const { return stated_; }
@@ -85,6 +91,8 @@ class TailFit {
   /// Returns whether the share of the halos in x is at its upper bound. The picture then does not limit this share.
   [[nodiscard]] bool at_most_halo(const std::vector<double>& x) const;
   [[nodiscard]] const TailBounds& bounds() const { return bounds_; }
+  /// Returns whether the picture shows negative shares.
+  [[nodiscard]] bool undershoots() const { return families_.front().negative > 0; }
   /// Returns the upper limit of the 95 % interval of the share of halos that are part of the MTF.
   [[nodiscard]] double halo_allowance() const;
   /// Return the lower and the upper limit of the 95 % interval of the share of the step in halos that are too wide for
@@ -98,10 +106,17 @@ class TailFit {
  private:
   friend class TailSamples;
   [[nodiscard]] double farthest_wide_share(double sign) const;
+  /// Least squares with halos of certain signs.
+  struct Family {
+    std::size_t negative = 0;                            ///< number of the first halos, whose shares are not positive
+    std::shared_ptr<const BoundedLeastSquares> problem;  ///< unknowns, then slacks
+    double variance = 0;                                 ///< of a pixel
+    double above = 0;  ///< chi-square of its minimum minus the least one of all families
+  };
   std::size_t unknowns_ = 0;
   TailBounds bounds_;
   double noise_ = 0;
-  std::shared_ptr<const BoundedLeastSquares> problem_;  ///< unknowns, then slacks
+  std::vector<Family> families_;  ///< the best first; at least one
   std::vector<double> stated_;
 };
 
@@ -111,11 +126,17 @@ class TailSamples {
   explicit TailSamples(std::size_t shading_columns);
   /// Adds the mean of `pixels` pixels near one position. Samples of one `block` (counted from 0) are close together.
   void add(const std::vector<double>& columns, double value, int pixels, std::size_t block);
-  /// Fits the model. Empty with fewer than two samples for each unknown, or if one side of the edge has no samples.
-  [[nodiscard]] std::optional<TailFit> fit(const TailBounds& bounds) const;
+  /// Fits the model. `level_error`: systematic error of the values, for example by rounding; only negative shares with
+  /// a larger effect are found. Empty with fewer than two samples for each unknown, or if one side of the edge has no
+  /// samples.
+  [[nodiscard]] std::optional<TailFit> fit(const TailBounds& bounds, double level_error = 0) const;
 
  private:
-  [[nodiscard]] TailFit fit_with(const TailBounds& bounds, double variance) const;
+  [[nodiscard]] TailFit::Family family(const TailBounds& bounds, std::size_t negative, double variance) const;
+  /// Returns the families with negative shares, if the picture shows such shares; otherwise the one without.
+  [[nodiscard]] std::vector<TailFit::Family> families(const TailBounds& bounds, double level_error) const;
+  /// Returns the sum of the squares of the residuals.
+  [[nodiscard]] double squares_about(const std::vector<double>& x) const;
   /// Returns the variance of a pixel from the residuals of a fit. It is larger if the residuals of neighbours are
   /// correlated.
   [[nodiscard]] double variance_about(const std::vector<double>& x) const;
@@ -128,6 +149,7 @@ class TailSamples {
   std::vector<Sample> samples_;
   std::vector<double> rows_;
   std::vector<double> gram_, right_;
+  double square_ = 0, pixels_ = 0;  ///< sum of pixels value^2, and of pixels
 };
 
 }  // namespace todbench

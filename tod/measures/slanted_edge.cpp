@@ -290,17 +290,22 @@ bool between_counts(const Found& found) {
   return std::any_of(ends.begin(), ends.end(), [](const auto& end) { return end.second > end.first; });
 }
 
-/// Effect of rounding on the profile, as a share of the step, without spreading noise: half a count of each tail is cut
-/// off, and each level may be half a count from the true one: up to two counts, and up to 1.5 were seen. A flat field
-/// that changes by a count adds a third. Noise removes the systematic part, by exp(-2 pi^2 sd^2) with the standard
-/// deviation in counts.
-double rounding_of(const Found& found) {
+/// Systematic error of a level by rounding, as a share of the step: half a count. Noise removes it, by exp(-2 pi^2
+/// sd^2) with the standard deviation in counts.
+double half_count_of(const Found& found) {
   if (!(found.levels.count_step > 0)) return 0;
   const double sd = found.residual_sd / found.levels.count_step;
   const double variance = std::max(0.0, sd * sd - 1.0 / 12);
-  const double counts = between_counts(found) ? 3 : 2;
-  return counts * found.levels.count_step / (found.levels.bright - found.levels.dark) *
+  return 0.5 * found.levels.count_step / (found.levels.bright - found.levels.dark) *
          std::exp(-2 * std::numbers::pi * std::numbers::pi * variance);
+}
+
+/// Effect of rounding on the profile, as a share of the step, without spreading noise: half a count of each tail is cut
+/// off, and each level may be half a count from the true one: up to two counts, and up to 1.5 were seen. A flat field
+/// that changes by a count adds a third.
+double rounding_of(const Found& found) {
+  const double counts = between_counts(found) ? 3 : 2;
+  return 2 * counts * half_count_of(found);
 }
 
 Result<void> check_profile(const Found& found) {
@@ -387,7 +392,7 @@ std::optional<EdgeTails> own_tails(const Upright& in, const Found& found, const 
   }
   TailBounds bounds = options.tails;
   bounds.widest_pitch = std::min(bounds.widest_pitch, widest_share * in.picture.cols * found.line.cosine());
-  auto fit = tails.fit(bounds);
+  auto fit = tails.fit(bounds, half_count_of(found));
   if (!fit) return std::nullopt;
   auto profiles = column_profiles(found, unknowns, columns_at);
   if (!profiles) return std::nullopt;
@@ -451,12 +456,16 @@ void add_notes(SlantedEdge& edge, const Found& found) {
         fmt::format("the fields beside the edge are uneven by {:.1f} % of the step; the fit of the tails tells shading "
                     "from halos",
                     100 * found.shading));
+  if (edge.undershoots)
+    edge.notes.emplace_back(
+        "the levels beside the edge overshoot: the camera sharpens its picture or removes slow changes. The intervals "
+        "allow for such a filter; a larger picture makes them shorter");
   if (edge.wide_halo_most > least_wide_share)
     edge.notes.push_back(
         fmt::format("{:.1f} to {:.1f} % of the step are in halos wider than {:.1f} pitches, which a larger picture "
                     "would tell from shading: the lower ends of the intervals allow for them",
                     100 * edge.wide_halo_least, 100 * edge.wide_halo_most, edge.widest_halo_pitch));
-  if (std::any_of(edge.mtf.begin() + 1, edge.mtf.end(), [](double value) { return value > 1.02; }))
+  if (!edge.undershoots && std::any_of(edge.mtf.begin() + 1, edge.mtf.end(), [](double value) { return value > 1.02; }))
     edge.notes.emplace_back("the MTF exceeds 1: the camera sharpens its picture");
 }
 
@@ -518,6 +527,7 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   if (edge.wide_halo_most > least_wide_share)
     std::for_each(edge.mtf_low.begin() + 1, edge.mtf_low.end(), [&](double& low) { low *= 1 - edge.wide_halo_most; });
   edge.mtf50_per_pitch = first_half(edge.frequency_per_pitch, edge.mtf);
+  edge.undershoots = tails->fit.undershoots();
   add_notes(edge, *found);
   return edge;
 }

@@ -66,6 +66,19 @@ TEST(SlantedEdge, HoldsTheTruthOfLensesWithTailsAndHalos) {
   EXPECT_GE(found.inside_any[1] + found.inside_any[2], 112);
   // Pictures that tell halos from shading have both ends.
   EXPECT_LE(found.open[1], 6);
+  EXPECT_EQ(found.sharpened, 0);
+}
+
+TEST(SlantedEdge, HoldsTheTruthOfSharpenedPictures) {
+  for (const auto& [amount, sigma] : {std::pair(0.3, 1.5), std::pair(0.3, 5.0), std::pair(0.03, 10.0)}) {
+    for (const double noise : {0.0003, 0.003}) {
+      const test::SharpenedCoverage seen = test::sharpened_coverage(amount, sigma, 120, noise, 1);
+
+      EXPECT_EQ(seen.found, 2) << amount << " " << sigma << " " << noise;
+      EXPECT_EQ(seen.inside, seen.intervals) << amount << " " << sigma << " " << noise;
+      EXPECT_EQ(seen.intervals, 8);
+    }
+  }
 }
 
 TEST(SlantedEdge, ALowEndAllowsForHalosThatThePictureShowsInPart) {

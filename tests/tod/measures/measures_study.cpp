@@ -92,7 +92,9 @@ TEST(MeasuresStudy, IntervalsOfEdgesWithTailsHoldTheTruth) {
   const test::TailCoverage found = test::tail_coverage(0, pictures - 1);
 
   std::printf("%d pictures, %d refused\n", found.edges, found.refused);
+  std::printf("%d said to be sharpened\n", found.sharpened);
   EXPECT_EQ(found.refused, 0);
+  EXPECT_LE(found.sharpened, 0.01 * found.edges);
   for (std::size_t k = 0; k < test::TailCoverage::frequencies.size(); ++k) {
     const auto mean = [&](const test::TailCoverage::Each& sum) { return sum[k] / found.edges; };
     std::printf("f %.2f: within %.3f (of any source %.3f), error %+.4f, interval -%.4f +%.4f, without a low end %.3f\n",
@@ -101,6 +103,21 @@ TEST(MeasuresStudy, IntervalsOfEdgesWithTailsHoldTheTruth) {
     const double least = 0.95 - 4 * std::sqrt(0.05 * 0.95 / found.edges);
     EXPECT_GE(mean(found.inside), least) << k;
     EXPECT_GE(mean(found.inside_any), least) << k;
+  }
+}
+
+TEST(MeasuresStudy, IntervalsOfSharpenedPicturesHoldTheTruth) {
+  constexpr std::uint64_t each = 10;
+  for (const auto& [amount, sigma] :
+       {std::pair(0.3, 1.5), std::pair(0.3, 5.0), std::pair(0.1, 5.0), std::pair(0.1, 12.0), std::pair(0.03, 10.0)}) {
+    for (const int side : {64, 120, 200}) {
+      for (const double noise : {0.0003, 0.003, 0.01}) {
+        const test::SharpenedCoverage seen = test::sharpened_coverage(amount, sigma, side, noise, each);
+        std::printf("amount %.2f, sigma %4.1f, %3d pixels, noise %.4f: %d of %d found, %d of %d intervals\n", amount,
+                    sigma, side, noise, seen.found, seen.edges, seen.inside, seen.intervals);
+        EXPECT_GE(seen.inside, least_coverage * seen.intervals);
+      }
+    }
   }
 }
 
