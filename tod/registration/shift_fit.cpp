@@ -142,7 +142,7 @@ ShiftFit summary(const Linearised& at, cv::Point2d shift) {
 struct PlaceWindow {
   cv::Rect window;
   cv::Point2d from_centre;
-  Column data, dx, dy;
+  Column data, shape, dx, dy;
 
   /// Derivatives of a pixel by shift and rotation, for a contrast of 1.
   [[nodiscard]] cv::Vec3d derivative(std::size_t i) const {
@@ -156,25 +156,39 @@ cv::Point2d middle(const Polygon& polygon) {
   return sum / static_cast<double>(polygon.size());
 }
 
+struct PlaceVariances {
+  cv::Vec3d place;
+  double amplitude = 0;
+};
+
 /// The largest variances of three assumptions on the noise: white, common to rows, common to columns.
-cv::Vec3d largest_variances(std::span<const PlaceWindow> windows, const cv::Matx33d& inverse, double amplitude,
-                            const cv::Vec3d& found, double white) {
-  std::map<int, cv::Vec3d> rows, columns;
+PlaceVariances largest_variances(std::span<const PlaceWindow> windows, const cv::Matx33d& inverse, double amplitude,
+                                 const cv::Vec3d& found, double energy, double white) {
+  struct Scores {
+    cv::Vec3d place;
+    double amplitude = 0;
+  };
+  std::map<int, Scores> rows, columns;
   for (const PlaceWindow& w : windows) {
     for (std::size_t i = 0; i < w.data.size(); ++i) {
       const cv::Vec3d derivative = amplitude * w.derivative(i);
-      const cv::Vec3d score = derivative * (w.data[i] - derivative.dot(found));
+      const double residual = w.data[i] - derivative.dot(found);
       const int at = static_cast<int>(i);
-      rows[w.window.y + at / w.window.width] += score;
-      columns[w.window.x + at % w.window.width] += score;
+      for (Scores* line : {&rows[w.window.y + at / w.window.width], &columns[w.window.x + at % w.window.width]})
+        line->place += residual * derivative, line->amplitude += residual * w.shape[i] / energy;
     }
   }
-  cv::Vec3d largest = white * cv::Vec3d(inverse(0, 0), inverse(1, 1), inverse(2, 2));
+  PlaceVariances largest{white * cv::Vec3d(inverse(0, 0), inverse(1, 1), inverse(2, 2)), white / energy};
   for (const auto* clusters : {&rows, &columns}) {
     cv::Matx33d middle_part = cv::Matx33d::zeros();
-    for (const auto& [index, score] : *clusters) middle_part += score * score.t();
+    double of_amplitude = 0;
+    for (const auto& [index, score] : *clusters) {
+      middle_part += score.place * score.place.t();
+      of_amplitude += score.amplitude * score.amplitude;
+    }
     const cv::Matx33d covariance = inverse * middle_part * inverse;
-    for (int k = 0; k < 3; ++k) largest[k] = std::max(largest[k], covariance(k, k));
+    for (int k = 0; k < 3; ++k) largest.place[k] = std::max(largest.place[k], covariance(k, k));
+    largest.amplitude = std::max(largest.amplitude, of_amplitude);
   }
   return largest;
 }
@@ -192,18 +206,22 @@ std::optional<PlaceFit> fit_place(const cv::Mat1d& picture, std::span<const Poly
   cv::Matx33d normal = cv::Matx33d::zeros();
   cv::Vec3d gradient(0, 0, 0);
   for (const Polygon& polygon : polygons) {
-    PlaceWindow w{
-        .window = place_window(polygon), .from_centre = middle(polygon) - centre, .data = {}, .dx = {}, .dy = {}};
+    PlaceWindow w{.window = place_window(polygon),
+                  .from_centre = middle(polygon) - centre,
+                  .data = {},
+                  .shape = {},
+                  .dx = {},
+                  .dy = {}};
     if (!contains(picture, w.window)) return std::nullopt;
     const BlurredPolygon model = blurred_polygon(polygon, blur_px, w.window);
-    Column shape = column(model.value);
-    w.data = column(picture, w.window), w.dx = column(model.d_shift_x), w.dy = column(model.d_shift_y);
-    for (Column* c : {&w.data, &shape, &w.dx, &w.dy}) remove_plane(*c, w.window.size());
-    const double own_energy = dot(shape, shape), own_overlap = dot(shape, w.data);
+    w.data = column(picture, w.window), w.shape = column(model.value);
+    w.dx = column(model.d_shift_x), w.dy = column(model.d_shift_y);
+    for (Column* c : {&w.data, &w.shape, &w.dx, &w.dy}) remove_plane(*c, w.window.size());
+    const double own_energy = dot(w.shape, w.shape), own_overlap = dot(w.shape, w.data);
     energy += own_energy, overlap += own_overlap;
     // Each has its own contrast here, so that a slightly wrong blur does not look like a shift.
-    for (Column* c : {&w.dx, &w.dy}) subtract(*c, shape, dot(*c, shape) / own_energy);
-    subtract(w.data, shape, own_overlap / own_energy);
+    for (Column* c : {&w.dx, &w.dy}) subtract(*c, w.shape, dot(*c, w.shape) / own_energy);
+    subtract(w.data, w.shape, own_overlap / own_energy);
     for (std::size_t i = 0; i < w.data.size(); ++i) {
       const cv::Vec3d derivative = w.derivative(i);
       normal += derivative * derivative.t();
@@ -225,8 +243,9 @@ std::optional<PlaceFit> fit_place(const cv::Mat1d& picture, std::span<const Poly
   // Four parameters of each polygon, shift and rotation.
   const double variance = residual / std::max(1.0, samples - 4.0 * static_cast<double>(windows.size()) - 3);
   const cv::Matx33d inverse = normal.inv() * (1 / (fit.amplitude * fit.amplitude));
-  const cv::Vec3d errors = largest_variances(windows, inverse, fit.amplitude, found, variance);
-  fit.amplitude_error = std::sqrt(variance / energy);
+  const PlaceVariances largest = largest_variances(windows, inverse, fit.amplitude, found, energy, variance);
+  const cv::Vec3d& errors = largest.place;
+  fit.amplitude_error = std::sqrt(largest.amplitude);
   fit.shift = {found[0], found[1]};
   fit.standard_error = {std::sqrt(errors[0]), std::sqrt(errors[1])};
   if (windows.size() >= 3) fit.turn_rad = found[2], fit.turn_error_rad = std::sqrt(errors[2]);

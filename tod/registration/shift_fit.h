@@ -46,7 +46,7 @@ struct PlaceFit {
 
 /// Computes one Gauss-Newton step from the given positions. The step is a linear function of the picture. It is
 /// therefore unbiased and has a known error, even if no single polygon is visible above the noise. A shift above half a
-/// pixel is underestimated. The standard error is the largest of three estimates: independent pixels, noise common to
+/// pixel is underestimated. Each standard error is the largest of three estimates: independent pixels, noise common to
 /// rows, noise common to columns (sandwich estimate). Empty if a window is partly outside the picture, or if the
 /// polygons do not determine a shift.
 [[nodiscard]] std::optional<PlaceFit> fit_place(const cv::Mat1d& picture, std::span<const Polygon> polygons,
