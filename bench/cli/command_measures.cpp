@@ -53,7 +53,7 @@ Interval interval_of(const SlantedEdge& edge, const std::vector<double>& low, st
 
 /// Bounds with a stated largest share of all halos.
 TailBounds with_halos(TailBounds bounds, double most) {
-  bounds.most_halo = most;
+  bounds.most_halo = bounds.most_halo_seen = most;
   bounds.most_wide = std::min(bounds.most_wide, most);
   return bounds;
 }
@@ -137,6 +137,7 @@ Json edge_json(const SlantedEdge& edge, const SfrArguments& arguments) {
           {"widest_halo_pitch", json_number(edge.widest_halo_pitch)},
           {"halo_allowance", json_number(edge.halo_allowance)},
           {"wide_halo_ci95", {json_number(edge.wide_halo_least), json_number(edge.wide_halo_most)}},
+          {"sharpened", edge.sharpened},
           {"mtf50_per_pitch", json_number(edge.mtf50_per_pitch)},
           {"mtf50_per_mrad", per_mrad(edge.mtf50_per_pitch)},
           {"above_stated_lens_per_pitch", json_number(above_stated_lens(edge, arguments))},

@@ -100,6 +100,7 @@ void add_edge(py::module_& module) {
       TODBENCH_READ(SlantedEdge, halo_allowance)
       TODBENCH_READ(SlantedEdge, wide_halo_least)
       TODBENCH_READ(SlantedEdge, wide_halo_most)
+      TODBENCH_READ(SlantedEdge, sharpened)
       TODBENCH_READ(SlantedEdge, mtf50_per_pitch)
       TODBENCH_READ(SlantedEdge, notes)
       // clang-format on

@@ -24,6 +24,7 @@ constexpr double chi_square_95 = 5.991;
 // Decrease of chi-square that shows negative shares. The 23 families without negative shares in the picture lower it by
 // more than this in fewer than one of 1000 pictures.
 constexpr double sure_undershoot = 20;
+constexpr double sure_halo = 4;  // decrease of chi-square that shows halos beyond the default bound
 
 /// Share of a normal blur of unit sigma about x that lies in (-half, half).
 double within(double x, double half) {
@@ -232,14 +233,15 @@ double TailSamples::variance_about(const std::vector<double>& x) const {
   return common > 1 + 3 * std::sqrt(2 / std::max(1.0, count)) ? variance * common : variance;
 }
 
-std::vector<TailFit::Family> TailSamples::families(const TailBounds& bounds, double level_error) const {
-  const auto settled = [&](std::size_t negative) {
-    double variance = 1e-4;
-    for (int pass = 0; pass < 2; ++pass) variance = variance_about(family(bounds, negative, variance).problem->best());
-    return family(bounds, negative, variance);
-  };
+TailFit::Family TailSamples::settled(const TailBounds& bounds, std::size_t negative) const {
+  double variance = 1e-4;
+  for (int pass = 0; pass < 2; ++pass) variance = variance_about(family(bounds, negative, variance).problem->best());
+  return family(bounds, negative, variance);
+}
+
+std::vector<TailFit::Family> TailSamples::families(const TailBounds& bounds, const TailFit::Family& positive,
+                                                   double level_error) const {
   const auto squares = [&](const TailFit::Family& of) { return squares_about(of.problem->best()); };
-  const TailFit::Family positive = settled(0);
   std::size_t best = 0;
   double least = squares(positive);
   for (std::size_t negative = 1; negative <= halos && !wide(negative - 1, bounds); ++negative) {
@@ -247,7 +249,7 @@ std::vector<TailFit::Family> TailSamples::families(const TailBounds& bounds, dou
     if (found < least) least = found, best = negative;
   }
   if (best == 0) return {positive};
-  std::vector<TailFit::Family> out{settled(best)};
+  std::vector<TailFit::Family> out{settled(bounds, best)};
   const double variance = out.front().variance;
   // The shapes are as accurate as the smallest noise that a fit assumes.
   const double gain = squares(positive) - squares(out.front());
@@ -271,7 +273,16 @@ std::optional<TailFit> TailSamples::fit(const TailBounds& bounds, double level_e
   };
   if (side(false) < 10 || side(true) < 10) return std::nullopt;
   TailFit out;
-  out.unknowns_ = unknowns_, out.bounds_ = bounds, out.families_ = families(bounds, level_error);
+  out.unknowns_ = unknowns_, out.bounds_ = bounds;
+  TailFit::Family positive = settled(bounds, 0);
+  if (bounds.most_halo_seen > bounds.most_halo) {
+    TailBounds wider = bounds;
+    wider.most_halo = bounds.most_halo_seen;
+    TailFit::Family more = settled(wider, 0);
+    const double gain = squares_about(positive.problem->best()) - squares_about(more.problem->best());
+    if (gain > sure_halo * more.variance) out.bounds_ = wider, positive = std::move(more);
+  }
+  out.families_ = families(out.bounds_, positive, level_error);
   const TailFit::Family& best = out.families_.front();
   out.noise_ = std::sqrt(best.variance);
   std::vector<double> weaker(unknowns_ + slacks, 0.0);

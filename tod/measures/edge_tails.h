@@ -56,6 +56,8 @@ struct TailBounds {
   /// Largest share of the contrast in the halos that are part of the MTF. If this bound alone determines an interval,
   /// the lower limit of the interval is not stated.
   double most_halo = 0.2;
+  /// Replaces most_halo if the picture shows a larger share.
+  double most_halo_seen = 0.7;
   double widest_pitch = 70;    ///< largest sigma of a halo that is part of the MTF
   double most_wide = 0.5;      ///< largest share of the step in halos wider than widest_pitch
   double most_undershoot = 1;  ///< largest sum of the sizes of negative shares, relative to the step
@@ -92,7 +94,7 @@ class TailFit {
   [[nodiscard]] bool at_most_halo(const std::vector<double>& x) const;
   [[nodiscard]] const TailBounds& bounds() const { return bounds_; }
   /// Returns whether the picture shows negative shares.
-  [[nodiscard]] bool undershoots() const { return families_.front().negative > 0; }
+  [[nodiscard]] bool sharpened() const { return families_.front().negative > 0; }
   /// Returns the upper limit of the 95 % interval of the share of halos that are part of the MTF.
   [[nodiscard]] double halo_allowance() const;
   /// Return the lower and the upper limit of the 95 % interval of the share of the step in halos that are too wide for
@@ -133,8 +135,10 @@ class TailSamples {
 
  private:
   [[nodiscard]] TailFit::Family family(const TailBounds& bounds, std::size_t negative, double variance) const;
-  /// Returns the families with negative shares, if the picture shows such shares; otherwise the one without.
-  [[nodiscard]] std::vector<TailFit::Family> families(const TailBounds& bounds, double level_error) const;
+  [[nodiscard]] TailFit::Family settled(const TailBounds& bounds, std::size_t negative) const;
+  /// Returns the families with negative shares, if the picture shows such shares; otherwise `positive`.
+  [[nodiscard]] std::vector<TailFit::Family> families(const TailBounds& bounds, const TailFit::Family& positive,
+                                                      double level_error) const;
   /// Returns the sum of the squares of the residuals.
   [[nodiscard]] double squares_about(const std::vector<double>& x) const;
   /// Returns the variance of a pixel from the residuals of a fit. It is larger if the residuals of neighbours are

@@ -456,7 +456,7 @@ void add_notes(SlantedEdge& edge, const Found& found) {
         fmt::format("the fields beside the edge are uneven by {:.1f} % of the step; the fit of the tails tells shading "
                     "from halos",
                     100 * found.shading));
-  if (edge.undershoots)
+  if (edge.sharpened)
     edge.notes.emplace_back(
         "the levels beside the edge overshoot: the camera sharpens its picture or removes slow changes. The intervals "
         "allow for such a filter; a larger picture makes them shorter");
@@ -465,7 +465,7 @@ void add_notes(SlantedEdge& edge, const Found& found) {
         fmt::format("{:.1f} to {:.1f} % of the step are in halos wider than {:.1f} pitches, which a larger picture "
                     "would tell from shading: the lower ends of the intervals allow for them",
                     100 * edge.wide_halo_least, 100 * edge.wide_halo_most, edge.widest_halo_pitch));
-  if (!edge.undershoots && std::any_of(edge.mtf.begin() + 1, edge.mtf.end(), [](double value) { return value > 1.02; }))
+  if (!edge.sharpened && std::any_of(edge.mtf.begin() + 1, edge.mtf.end(), [](double value) { return value > 1.02; }))
     edge.notes.emplace_back("the MTF exceeds 1: the camera sharpens its picture");
 }
 
@@ -527,7 +527,7 @@ Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOpti
   if (edge.wide_halo_most > least_wide_share)
     std::for_each(edge.mtf_low.begin() + 1, edge.mtf_low.end(), [&](double& low) { low *= 1 - edge.wide_halo_most; });
   edge.mtf50_per_pitch = first_half(edge.frequency_per_pitch, edge.mtf);
-  edge.undershoots = tails->fit.undershoots();
+  edge.sharpened = tails->fit.sharpened();
   add_notes(edge, *found);
   return edge;
 }

@@ -68,7 +68,7 @@ struct SlantedEdge {
   /// is above least_wide_share, `mtf_low` is lower than `mtf_low_in_picture` by this share.
   double wide_halo_least = 0, wide_halo_most = 0;
   /// The picture is sharpened: halos with negative shares are part of the fit and of the intervals.
-  bool undershoots = false;
+  bool sharpened = false;
   double displacement_pitch = 0;  ///< standard deviation of the lines' positions about the edge; 0 if not significant
   std::optional<double> mtf50_per_pitch;  ///< lowest frequency at which the MTF is 0.5
   std::vector<std::string> notes;         ///< sentences

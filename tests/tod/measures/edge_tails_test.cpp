@@ -69,6 +69,22 @@ TEST(SlantedEdge, HoldsTheTruthOfLensesWithTailsAndHalos) {
   EXPECT_EQ(found.sharpened, 0);
 }
 
+TEST(SlantedEdge, HoldsTheTruthOfHalosBeyondTheDefaultBound) {
+  for (const auto& [share, sigma] : {std::pair(0.3, 3.0), std::pair(0.3, 25.0), std::pair(0.4, 10.0)}) {
+    const TailedLens lens{.halos = {{share, sigma}}};
+    const TailedProfile profile(lens, 5);
+    for (const int side : {64, 120, 240}) {
+      const TailedEdge made{.rows = side, .columns = side, .noise = 0.0003};
+      const SlantedEdge edge = slanted_edge(made.picture(profile, 2), {}).value();
+      for (const std::size_t i : {std::size_t{5}, std::size_t{10}, std::size_t{25}}) {
+        const double truth = lens.mtf(edge.frequency_per_pitch[i], made.angle_deg);
+        EXPECT_LE(edge.mtf_low[i], truth) << share << " " << sigma << " " << side << " " << i;
+        EXPECT_GE(edge.mtf_high[i], truth) << share << " " << sigma << " " << side << " " << i;
+      }
+    }
+  }
+}
+
 TEST(SlantedEdge, HoldsTheTruthOfSharpenedPictures) {
   for (const auto& [amount, sigma] : {std::pair(0.3, 1.5), std::pair(0.3, 5.0), std::pair(0.03, 10.0)}) {
     for (const double noise : {0.0003, 0.003}) {

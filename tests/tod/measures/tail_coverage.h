@@ -54,7 +54,7 @@ inline TailCoverage tail_coverage(std::uint64_t first, std::uint64_t last) {
       out.refused += edge ? 0 : 1;
       if (!edge) continue;
       ++out.edges;
-      out.sharpened += edge->undershoots ? 1 : 0;
+      out.sharpened += edge->sharpened ? 1 : 0;
       for (std::size_t k = 0; k < TailCoverage::frequencies.size(); ++k) {
         const auto i = static_cast<std::size_t>(std::lround(100 * TailCoverage::frequencies[k]));
         const double truth = lens.mtf(edge->frequency_per_pitch[i], made.angle_deg, edge->widest_halo_pitch);
@@ -88,7 +88,7 @@ inline SharpenedCoverage sharpened_coverage(double amount, double sigma, int sid
       const auto edge = slanted_edge(made.picture(profile, seed), {});
       if (!edge) continue;
       ++out.edges;
-      out.found += edge->undershoots ? 1 : 0;
+      out.found += edge->sharpened ? 1 : 0;
       for (const double frequency : TailCoverage::frequencies) {
         const auto i = static_cast<std::size_t>(std::lround(100 * frequency));
         const double truth = lens.mtf(frequency, made.angle_deg);
