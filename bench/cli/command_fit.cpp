@@ -48,7 +48,7 @@ void print(const Console& console, const PsychometricFit& fit) {
       {"log likelihood", fixed(fit.log_likelihood, 4), ""},
       {"deviance", fixed(fit.deviance, 4), "degrees of freedom: " + std::to_string(fit.degrees_of_freedom)}};
   if (fit.posterior) {
-    rows.push_back({"posterior median", fixed(fit.posterior->median, 6),
+    rows.push_back({"posterior median", fixed(std::optional(fit.posterior->median), 6),
                     "95 %: " + range({fit.posterior->low, fit.posterior->high}, 6) +
                         (fit.posterior->prior_bound ? " (limited by the prior)" : "")});
   }
