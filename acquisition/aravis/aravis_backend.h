@@ -22,7 +22,7 @@ enum class AravisTransport {
 
 /// Handling of lost packets.
 enum class PacketResend {
-  automatic,  ///< missing packets are requested again if the camera's capability register states support
+  automatic,  ///< missing packets are requested again if the camera's capability register shows support
   never,      ///< a frame with missing packets is delivered as incomplete when the next frame begins
   always,     ///< missing packets are always requested again; a frame with missing packets is delayed by up to 0.1 s
 };
@@ -57,8 +57,8 @@ struct AravisOptions {
 /// stop() of a source returns within milliseconds if the camera answers and within 0.4 s if it has vanished. A get or
 /// set that is waiting for a vanished camera delays stop() by up to 2.5 s (five attempts of 0.5 s inside Aravis). A
 /// vanished GigE camera is reported as `disconnected` about 3 s after its last frame if next() is called with timeouts
-/// below 1 s, otherwise after 5 s by Aravis's heartbeat; an unplugged USB camera is reported at once. If the source of
-/// a vanished camera is destroyed, a background thread that owns only the camera closes the connection (up to 8 s).
+/// below 1 s, otherwise after 5 s by Aravis's heartbeat; an unplugged USB camera is reported immediately. If the source
+/// of a vanished camera is destroyed, a background thread that owns only the camera closes the connection (up to 8 s).
 [[nodiscard]] std::unique_ptr<CameraBackend> aravis_backend(AravisOptions options = {});
 
 }  // namespace todbench

@@ -78,7 +78,7 @@ class AravisSource : public FrameSource {
   void configure_transport();
   [[nodiscard]] Result<void> state_frame(const std::string& value);
   [[nodiscard]] Result<void> name_nuc_command(const std::string& value);
-  /// Returns an error if the camera has sent frames of only one size since the start and states another size.
+  /// Returns an error if the camera has sent frames of only one size since the start and reports a different size.
   [[nodiscard]] std::optional<Error> misstated_size(const Frame& frame, cv::Size sent);
   void check_socket_buffer(ArvStream* stream);
   void publish_socket_buffer();

@@ -33,7 +33,7 @@ struct CameraFamily {
   std::vector<std::string> nuc_commands;   ///< commands of a correction, best first
   std::vector<std::string> frame_rate;     ///< features that contain the frame rate, best first
   std::string test_pattern, test_ramp;     ///< enumeration and its entry; the ramp has the count x at column x
-  bool high_byte_first = false;            ///< Mono16 arrives with the high byte first, but no feature states this
+  bool high_byte_first = false;            ///< Mono16 arrives with the high byte first, but no feature reports this
 };
 
 /// Returns the family of a camera by vendor and model, or by its features if the name is unknown; "unlisted" if neither

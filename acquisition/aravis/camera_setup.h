@@ -34,18 +34,18 @@ struct StreamFormat {
 [[nodiscard]] Result<std::vector<std::string>> prepare_camera(ArvCamera* camera, const CameraFamily& family,
                                                               const std::string& wanted);
 
-/// Reads geometry, format and payload as the camera states them now. Limited to 16384 x 16384 pixels and 64 MiB,
+/// Reads geometry, format and payload as the camera reports them now. Limited to 16384 x 16384 pixels and 64 MiB,
 /// because these unverified numbers determine how much memory is allocated.
 [[nodiscard]] Result<StreamFormat> read_stream_format(ArvCamera* camera);
 
-/// Reads the scale of the camera's present settings; uncalibrated if the settings state no scale. IRFormat (FLIR A3xx
+/// Reads the scale of the camera's present settings; uncalibrated if the settings contain no scale. IRFormat (FLIR A3xx
 /// ... A700): 0.01 or 0.1 K per count, or the radiometric formula with R, B, F, J0, J1 at unit emissivity and
 /// transmission: T = B / ln(R J1 / (S - J0) + F). TemperatureLinearMode (FLIR Ax5): 0.04 or 0.4 K per count, or the
 /// formula with R, B, F, O. Float features TemperatureLinearScale (K per count) and TemperatureLinearOffset (K) take
 /// precedence over the names.
 [[nodiscard]] RadiometricScale read_scale(ArvDevice* device, const CameraFamily& family);
 
-/// Returns the frame rate in Hz; 0 if the camera does not state it.
+/// Returns the frame rate in Hz; 0 if the camera does not report it.
 [[nodiscard]] double read_frame_rate(ArvCamera* camera, const CameraFamily& family);
 
 /// Reads every setting that may influence a measurement, by feature name; features that the camera lacks or refuses are

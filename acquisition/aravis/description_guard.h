@@ -26,7 +26,7 @@ struct DescriptionReading {
 };
 
 /// Reads the description of the GigE camera at this address from the location that the camera states. Returns it
-/// unzipped and safe to evaluate; empty if the camera states no location. Errors: `not_found` with the reason,
+/// unzipped and safe to evaluate; empty if the camera reports no location. Errors: `not_found` with the reason,
 /// `interrupted`.
 [[nodiscard]] Result<std::optional<std::string>> read_safe_description(const std::string& ipv4,
                                                                        const DescriptionReading& reading);
@@ -41,7 +41,8 @@ struct DescriptionReading {
 [[nodiscard]] Result<void> guard_device(ArvDevice* device, const std::optional<std::string>& expected);
 
 /// Returns one sentence with the reason why this feature must not be evaluated; empty if it may be evaluated. Reads
-/// those register lengths that are stored only in the camera. Guards a device that is not guarded yet.
+/// those register lengths that are stored only in the camera. If the description of the device has not been checked
+/// yet, checks it first.
 [[nodiscard]] std::optional<std::string> feature_fault(ArvDevice* device, const std::string& feature);
 
 }  // namespace todbench

@@ -33,7 +33,7 @@ struct U3vDescriptionContent {
   bool zipped = false;
 };
 
-/// Reads the first description in the manifest of the camera with these names, and does not change the camera. Empty if
+/// Reads the first description in the manifest of the camera with these names. Does not change the camera. Empty if
 /// there is no such camera or another program uses it. Errors: `not_found` (its tables are unreadable or contradictory;
 /// it is too slow), `interrupted`.
 [[nodiscard]] Result<std::optional<U3vDescriptionContent>> u3v_read_description(const UsbNames& names,

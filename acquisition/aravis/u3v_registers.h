@@ -9,7 +9,7 @@
 
 namespace todbench {
 
-/// Largest payload of a frame; cameras that state more are not opened.
+/// Largest payload of a frame; cameras that report more are not opened.
 inline constexpr std::uint64_t most_payload_bytes = 64U << 20U;
 
 /// Strings of the bootstrap registers (GenCP 1.1, section 4.3: ABRM), empty if absent. They do not depend on the

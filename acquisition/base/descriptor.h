@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Owned POSIX file descriptors, and waits on them that end at once on a stop request.
+// Owned POSIX file descriptors, and waits on them that end immediately on a stop request.
 #pragma once
 
 #include <chrono>
@@ -32,8 +32,8 @@ class Descriptor {
   int fd_ = -1;
 };
 
-/// A descriptor that becomes readable on a stop request: add it to a poll() with the other descriptors. Lives on the
-/// waiting thread.
+/// A descriptor that becomes readable on a stop request: add it to a poll() with the other descriptors. Create and
+/// destroy it on the waiting thread.
 class StopEvent {
  public:
   explicit StopEvent(const std::stop_token& stop);

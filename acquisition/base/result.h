@@ -25,7 +25,7 @@ enum class ErrorCode {
   internal,          ///< a bug of the program
 };
 
-/// The subject of a failure, for a caller that uses another name for it, such as a form or a command line.
+/// The subject of a failure. Forms and command lines can replace its name by the name that they show.
 struct ErrorKey {
   std::string name;    ///< a key of a description with its section ("target.delta_t_k"), an option ("--seed") or a file
   std::string reason;  ///< the fault without the name: "expected a number above 0, found 0"

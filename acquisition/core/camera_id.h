@@ -28,7 +28,7 @@ inline constexpr std::array all{gige, u3v, v4l2, usb, file, sim};
 /// letters, digits, dots and underscores become underscores. Precondition: at least one part.
 [[nodiscard]] std::string camera_id(std::string_view scheme, std::initializer_list<std::string_view> identity);
 
-/// Returns the text after "SCHEME:"; empty if the id has another scheme.
+/// Returns the text after "SCHEME:"; empty if the id has a different scheme.
 [[nodiscard]] std::optional<std::string> camera_name(std::string_view id, std::string_view scheme);
 [[nodiscard]] inline bool has_scheme(std::string_view id, std::string_view scheme) {
   return camera_name(id, scheme).has_value();

@@ -46,8 +46,8 @@ class CorrectionWatch {
  public:
   explicit CorrectionWatch(CorrectionWatchOptions options) : options_(options) {}
 
-  /// Returns the sign of a correction in this frame, if any. The frame must be complete and show the same scene as the
-  /// one before it.
+  /// Returns the evidence of a correction in this frame, if any. The frame must be complete and show the same scene as
+  /// the one before it.
   [[nodiscard]] std::optional<CorrectionSign> see(const Frame& frame);
   /// Does the same for a frame that is bit-identical to the preceding frame.
   [[nodiscard]] std::optional<CorrectionSign> see_frozen();

@@ -10,7 +10,7 @@ namespace todbench {
 /// and larger if a camera or a converter fills the low bits of its words with zeros.
 class CountStep {
  public:
-  /// Compares a frame with the previous frame. The first frame, and a frame of another size, are only stored.
+  /// Compares a frame with the previous frame. The first frame, and a frame of a different size, are only stored.
   void add(const cv::Mat1w& counts);
   /// Returns the step in counts; 0 if no pixel has changed.
   [[nodiscard]] int step() const { return step_; }

@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Trustworthiness of a frame's pixels according to the transport.
+/// Integrity of a frame's pixels as reported by the transport.
 enum class FrameStatus {
   complete,
   incomplete,  ///< data missing or late; never measured
@@ -32,7 +32,7 @@ enum class Numbering : std::uint8_t {
   counted,    ///< from the numbers of the camera or its driver, which agree with the elapsed time
   restarted,  ///< the numbers restarted or jumped, and all clocks contradict them; the loss is estimated from time
   timed,      ///< the numbers are consecutive, but time is missing; the loss is estimated from time
-  unread,     ///< as counted; frames before this one were lost because the program had filled every buffer
+  unread,     ///< as counted; frames before this one were lost because all buffers of the program were full
 };
 
 [[nodiscard]] std::string_view to_string(Numbering numbering);

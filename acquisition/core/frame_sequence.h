@@ -46,7 +46,7 @@ struct FramePlace {
 /// Frames must be given in the order in which the transport completed them. One thread at a time.
 class FrameSequence {
  public:
-  /// `frame_rate_hz` as the camera states it; 0: unknown.
+  /// `frame_rate_hz` as the camera reports it; 0: unknown.
   FrameSequence(FrameNumberKind kind, double frame_rate_hz);
 
   /// Returns the position of a frame in the sequence. A frame without a number gets the position after the last frame;
@@ -62,7 +62,7 @@ class FrameSequence {
     std::uint64_t number = 0, sequence = 0;
     std::int64_t device_time_ns = 0, host_time_ns = 0;
   };
-  /// Frame periods from the anchor to a frame, by each clock; empty if the clock states no time.
+  /// Frame periods from the anchor to a frame, by each clock; empty if the clock has no time.
   struct Elapsed {
     std::optional<double> device, host;
     double period_ns = 0;  ///< frame period on the host's clock
@@ -127,7 +127,7 @@ class FrameSequence {
   bool after_unread_ = false;  ///< FrameStamp::after_unread of the last frame, if no gap preceded it
   std::optional<Anchor> anchor_;
   std::uint64_t last_ = 0;
-  std::optional<double> last_gap_;  ///< device periods, if the last frame hid a gap
+  std::optional<double> last_gap_;  ///< gap in frame periods of the device clock, if the last frame concealed one
   std::optional<Silence> silence_;
 };
 

@@ -15,8 +15,8 @@
 
 namespace todbench {
 
-/// Judges the numbers of damaged frames that a gate counted in `frames`, each kind of damage alone. Error: `integrity`
-/// if more than 1 % of the frames have one of `damages`.
+/// Judges the numbers of damaged frames that a gate counted in `frames`, each kind of damage separately. Error:
+/// `integrity` if more than 1 % of the frames have one of `damages`.
 [[nodiscard]] Result<void> judge_damages(const std::map<Rejection, std::uint64_t>& rejected, std::uint64_t frames,
                                          std::span<const Rejection> damages);
 

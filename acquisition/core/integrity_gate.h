@@ -60,8 +60,8 @@ class IntegrityGate {
   [[nodiscard]] std::optional<Rejection> judge(const Frame& frame);
   /// Revokes the acceptance of the last frame for a reason that only the caller knows (time since a correction).
   void reject_accepted(Rejection reason);
-  /// Moves the frame that judge() has just rejected from the reason `from` to the reason `to`, which only the caller
-  /// knows.
+  /// Counts the frame that judge() has just rejected under the reason `to` instead of `from`. Use it for a reason that
+  /// only the caller knows.
   void recount(Rejection from, Rejection to);
 
   [[nodiscard]] std::uint64_t accepted() const { return accepted_; }

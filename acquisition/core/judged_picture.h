@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The picture that is judged instead of a frame, after processing stages behind the camera.
+// The picture that is judged instead of a frame, after processing stages after the camera.
 #pragma once
 
 #include <opencv2/core.hpp>

@@ -58,7 +58,7 @@ struct DescriptionNode {
   std::string element;  ///< "IntReg"
   NodeKind kind = NodeKind::other;
   std::vector<NodeReference> references;
-  std::vector<std::size_t> parts;      ///< nodes inside a register or an enumeration that it reads
+  std::vector<std::size_t> parts;      ///< indices of the nodes inside this register or enumeration that it reads
   std::optional<std::size_t> inside;   ///< register that contains an entry
   std::vector<std::string> lengths;    ///< <Length>, as in the text
   std::vector<std::string> values;     ///< <Value>

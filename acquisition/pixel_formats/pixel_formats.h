@@ -114,7 +114,7 @@ struct PixelLayout {
 
 /// Encodes a picture for a device that sends it: the inverse of decode_pixels(). Padding and ignored bytes are zero
 /// (for yuyv 128, no colour). Returns exactly picture_bytes(). Errors: `invalid_input` as picture_bytes(), a picture of
-/// another size, or a pixel that exceeds significant_bits().
+/// a wrong size, or a pixel that exceeds significant_bits().
 [[nodiscard]] Result<std::vector<std::uint8_t>> encode_pixels(const cv::Mat1w& counts, const PixelLayout& layout);
 
 /// Rows of a frame with a separate meaning: display picture, temperatures or telemetry.
@@ -122,10 +122,10 @@ struct RowSection {
   int first = 0, count = 0;
 };
 
-/// Returns the bytes of a section of a frame of two-byte pixels, so that the section can be decoded alone. Example:
-/// cameras of the InfiRay class send 256 x 384 YUYV whose rows 192 ... 383 are 256 x 192 temperatures of 16 bits,
-/// little-endian. Telemetry rows of a Lepton have 16 bits like its picture. `row_bytes` as in PixelLayout, but not 0.
-/// Error: `invalid_input` if the section exceeds the bytes.
+/// Returns the bytes of a section of a frame of two-byte pixels, so that the section can be decoded separately.
+/// Example: cameras of the InfiRay class send 256 x 384 YUYV whose rows 192 ... 383 are 256 x 192 temperatures of 16
+/// bits, little-endian. Telemetry rows of a Lepton have 16 bits like its picture. `row_bytes` as in PixelLayout, but
+/// not 0. Error: `invalid_input` if the section exceeds the bytes.
 [[nodiscard]] Result<std::span<const std::uint8_t>> section_bytes(std::span<const std::uint8_t> frame,
                                                                   std::size_t row_bytes, RowSection section);
 

@@ -83,7 +83,7 @@ enum class SeekFrameKind : std::uint16_t {
 
 /// A frame as received.
 struct SeekFrame {
-  std::uint16_t kind = 0;     ///< a SeekFrameKind, or another number
+  std::uint16_t kind = 0;     ///< a SeekFrameKind, or an unknown number
   std::uint16_t counter = 0;  ///< number of exposures, wraps at 2^16
   std::uint16_t temperature_word = 0;
   cv::Mat1w picture;  ///< as sent, without correction of shutter offsets and dead pixels

@@ -36,7 +36,7 @@ struct BosonReply {
 [[nodiscard]] std::string boson_request(std::uint32_t sequence, BosonFunction function, std::string_view payload = {});
 
 /// Reads the bytes from a start byte to the next end byte, both included. Error: `invalid_input` (no frame, an unknown
-/// escape, a wrong CRC, another channel, too short).
+/// escape, a wrong CRC, a wrong channel, too short).
 [[nodiscard]] Result<BosonReply> boson_reply(std::string_view frame);
 
 /// Return the names of the modes that the features GainMode and FFCMode use; empty for an unknown number.

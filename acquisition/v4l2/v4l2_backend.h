@@ -13,12 +13,13 @@ namespace todbench {
 struct V4l2Options {
   /// PFNC name of the counts: "Mono16", "Mono14", "Mono8" ...; empty: the format with the most significant bits.
   std::string pixel_format;
-  unsigned buffers = 8;  ///< shared with the driver; a receiving thread empties them at once
+  unsigned buffers = 8;  ///< shared with the driver; a receiving thread empties them immediately
 };
 
 /// Lists and opens cameras by identity, "v4l2:VENDOR-MODEL-SERIAL" from the USB device, or by their present node,
 /// "v4l2:/dev/video2". A camera without a serial number is identified by its port. Y16, Y14, Y12, Y10 and GREY are
-/// counts. YUYV is measured only if the camera sends temperatures below its picture (256 x 384 and similar).
+/// counts. YUYV is measured only if the camera sends temperatures in the rows below its picture (256 x 384 and
+/// similar).
 ///
 /// Features in addition to the controls of the driver: PixelFormat, Width, Height, AcquisitionFrameRate,
 /// DeviceVendorName, DeviceModelName, DeviceSerialNumber, and TemperatureLinearScale and TemperatureLinearOffset

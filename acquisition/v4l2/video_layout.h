@@ -47,7 +47,7 @@ struct VideoLayout {
   /// Rows without picture, all above or all below it. `picture` then begins at the first row that may belong to either.
   /// Their position is determined in each frame: they differ more from their neighbours than rows of the picture do.
   int foreign_rows = 0;
-  double kelvin_per_count = 0;  ///< 0: the family does not state it
+  double kelvin_per_count = 0;  ///< 0: the family does not report it
 };
 
 /// Maximum number of additional rows that are interpreted as telemetry if a mode is higher than another mode of the
@@ -75,7 +75,7 @@ struct VideoPicture {
 };
 
 /// Decodes counts and telemetry of one frame. Error: `invalid_input` if the number of bytes differs from the layout. If
-/// there are more bytes, the rows are longer than the driver states or additional rows exist, so the position of every
+/// there are more bytes, the rows are longer than the driver reports or additional rows exist, so the position of every
 /// pixel is uncertain.
 [[nodiscard]] Result<VideoPicture> read_video_frame(std::span<const std::uint8_t> bytes, const VideoLayout& layout);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of commands that observe a scene through air with a sensor.
+// Options of commands that simulate a sensor viewing a scene through air.
 #pragma once
 
 #include <CLI/CLI.hpp>

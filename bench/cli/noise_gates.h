@@ -34,7 +34,7 @@ class EndValues {
     double pixels = 0, next_pixels = 0;
     void add(float value);
   };
-  End high_, low_;  ///< highest and lowest value; the lowest as the highest of the values with the other sign
+  End high_, low_;  ///< highest and lowest value; the lowest value is stored as the highest of the negated values
   double pixels_ = 0;
 };
 

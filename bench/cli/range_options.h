@@ -42,7 +42,8 @@ struct RangeOptions {
   CriterionSource criterion_source = CriterionSource::published;
   /// Observer of the TOD curve of the session; empty: no session.
   std::string curve_observer{};
-  /// Phrase with the observers that the file of --m75-of states.
+  /// Phrase for the result that describes the M75 of --m75-of: the observers who identified the targets, the set of
+  /// targets, and the observer of the TOD curve.
   std::string m75_observer{};
   double n50 = 6,                ///< cycles on the target for 50 % in ACQUIRE
       mtdp_n50 = 6,              ///< cycles on the target for 50 % in the MTDP-like model
@@ -65,9 +66,11 @@ struct RangeOptions {
   [[nodiscard]] bool asks(RangeModel model) const;
   /// Returns whether the air path is a tabulated atmosphere and not a single extinction coefficient.
   [[nodiscard]] bool has_table() const;
-  /// Returns the sensor of --sensor; if absent, the sensor of the session with its microscan.
+  /// Returns the sensor that --sensor names. Without this option, returns the sensor of the session, with the microscan
+  /// of the session's plan; empty if there is no session.
   [[nodiscard]] Result<std::optional<SensorSpec>> sensor_of(const std::optional<Session>& session) const;
-  /// Returns the air path of the options.
+  /// Returns the air path that --atmosphere and --haze select. Without --band, the band of the sensor applies.
+  /// `extinction_per_km` is the extinction coefficient of the atmosphere "beer-lambert", the default.
   [[nodiscard]] Result<Atmosphere> air(const std::optional<SensorSpec>& sensor, double extinction_per_km) const;
   /// Converts the radiances of target and background to a contrast in kelvin on the NETD scale. Returns `delta_t_k`
   /// unchanged if no background is given.
@@ -78,7 +81,8 @@ struct RangeOptions {
   /// Returns the curves and the sensor that the models use.
   [[nodiscard]] Result<RangeSources> sources(std::vector<TodThreshold> thresholds,
                                              const std::optional<SensorSpec>& sensor) const;
-  /// Writes the requested figure and page. `said`: sentences about the results that the page shows.
+  /// Writes the figure of --svg and the page of --page, if requested. `said`: sentences about the results, which are
+  /// printed on the page.
   [[nodiscard]] Result<void> write(const std::vector<ModelRange>& models, const RangeQuestion& question,
                                    const std::vector<std::string>& said, const Json& grids) const;
 

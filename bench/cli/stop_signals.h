@@ -9,8 +9,8 @@
 namespace todbench {
 
 /// Turns SIGINT, SIGTERM and SIGHUP into a stop request, except signals that the parent process set to be ignored
-/// (nohup, background jobs). A second signal ends the process at once with exit code 130. Create it before any other
-/// thread starts, because threads inherit the blocked signals.
+/// (nohup, background jobs). A second signal ends the process immediately with exit code 130. Create it before any
+/// other thread starts, because threads inherit the blocked signals.
 class StopSignals {
  public:
   StopSignals();

@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Options of bench_host(). All pointers outlive the host.
+/// Options of bench_host(). The objects to which the pointers refer must outlive the host.
 struct BenchHostOptions {
   const Pause* pause = nullptr;  ///< null: the run never pauses
   FramesWhilePresenting frames_while_presenting = FramesWhilePresenting::leave;

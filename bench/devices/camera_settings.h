@@ -20,8 +20,8 @@ namespace todbench {
 /// differ by at most 0.1 %, because devices round.
 [[nodiscard]] bool same_setting(std::string_view written, std::string_view read);
 
-/// Reads back the written features. Returns a sentence for each feature with another value. Features that cannot be
-/// read (commands) are left out. Errors: `calibration` (a feature that scales counts has another value),
+/// Reads back the written features. Returns a sentence for each feature with a different value. Features that cannot be
+/// read (commands) are left out. Errors: `calibration` (a feature that scales counts has a different value),
 /// `disconnected`.
 [[nodiscard]] Result<std::vector<std::string>> check_written_settings(
     FrameSource& camera, const std::map<std::string, std::string>& written);

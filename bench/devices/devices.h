@@ -36,7 +36,7 @@ using SayProgress = std::function<void(std::string_view sentence)>;
                                                                    const CameraPatience& patience, std::stop_token stop,
                                                                    const SayProgress& on_progress = {});
 
-/// Library behind GigE Vision and USB3 Vision cameras.
+/// Library that controls GigE Vision and USB3 Vision cameras.
 struct CameraLibrary {
   std::string version;              ///< version at run time, "Aravis 0.8.26"
   std::vector<std::string> faults;  ///< known faults of this version, one sentence each
@@ -56,7 +56,7 @@ struct OpenedBench {
 
 /// Opens the devices of the plan and writes its settings into the camera. Errors: `not_found`, `invalid_input` (the
 /// target cannot work with this camera, or a setting is refused), `calibration` (a setting that scales counts has
-/// another value on read-back), `interrupted`. `host` controls the measurement; `on_wait` is called while the target
+/// a wrong value on read-back), `interrupted`. `host` controls the measurement; `on_wait` is called while the target
 /// settles.
 [[nodiscard]] Result<OpenedBench> open_bench(const LoadedPlan& loaded, std::stop_token stop,
                                              const ExperimentHost& host = {}, const SayProgress& on_progress = {},

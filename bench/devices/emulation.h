@@ -57,7 +57,7 @@ struct EmulationArguments {
 
 /// Length of the demonstration.
 enum class DemonstrationLength {
-  quick,  ///< without the parts of the plan 'acceptance' that need many frames of their own
+  quick,  ///< without the parts of the plan 'acceptance' that need many additional frames
   full,   ///< the plan 'acceptance'
 };
 /// Returns the plan of `todbench demo`; quick: the plan 'demo' with the budget, noise, geometry and pictures of

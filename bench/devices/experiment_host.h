@@ -20,12 +20,12 @@ namespace todbench {
 
 struct OpenedBench;
 
-/// Stages of an enhancement package, behind the modules of the plan. They process the frames of the camera and of its
+/// Stages of an enhancement package, after the modules of the plan. They process the frames of the camera and of its
 /// twin.
 struct AddedStages {
   /// Creates the stages and passes on lines of their standard error. Empty: no stages.
   std::function<std::vector<std::unique_ptr<ChainStage>>(const std::function<void(std::string_view line)>&)> make{};
-  int dither = 1;         ///< n: the twin observes n x n positions within a pixel in turn, as the recorded stage did
+  int dither = 1;  ///< n: the twin observes n x n positions within a pixel in sequence, as the recorded stage did
   int memory_frames = 0;  ///< exposures of the twin that are discarded after a change of the target
   /// Sets the options of the recorded run. These options are required because a recording replays only the questions of
   /// that run. The answers are then reduced to binary answers. Empty: no recorded run.
@@ -41,7 +41,7 @@ struct CameraPatience {
 
 /// Controls of a run beyond its plan. An ExperimentListener only receives progress.
 struct ExperimentHost {
-  /// Lets a run pause between two presentations; null: it never pauses. Outlives the run.
+  /// Lets a run pause between two presentations; null: it never pauses. Must outlive the run.
   const Pause* pause = nullptr;
   /// Passes requests of a target of kind prompt to the operator; empty: at the terminal.
   AskOperator ask_operator{};

@@ -19,7 +19,7 @@ struct ProcessingRecord {
 
 /// Destination of the output of the stages.
 enum class ProcessedAs {
-  judged,  ///< Frame::judged; plate, contrast, noise and corrections are found in the original counts
+  judged,  ///< Frame::judged; plate, contrast, noise and corrections come from the original counts
   counts,  ///< Frame::counts, as if the camera had sent them, and Frame::judged; for stages with one sample per pixel
 };
 

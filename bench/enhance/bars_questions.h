@@ -40,8 +40,9 @@ struct BarsQuestion {
 /// set-ups, which are not enough for a threshold).
 [[nodiscard]] Result<std::vector<BarsQuestion>> bars_questions(const KeptBars& kept, const BarsRequest& request);
 /// Returns both windows side by side, separated by a strip of background: 8-bit grey, enlarged by bicubic
-/// interpolation. The grey scale spans the larger of three contrasts and six standard deviations of both windows. It
-/// does not depend on the side of the target.
+/// interpolation. The range of the grey scale is three times the contrast, or six times the root mean square of the
+/// samples of both windows if that is larger. The grey scale is the same whether the target is on the left or on the
+/// right.
 [[nodiscard]] cv::Mat1b bars_picture(const KeptBars& kept, const BarsQuestion& question, int magnification);
 /// Returns the answer to a decision in the form of the record.
 [[nodiscard]] BarsAnswer bars_answer(const KeptBars& kept, const BarsQuestion& question, bool answered_left);
@@ -53,8 +54,8 @@ struct BarsQuestion {
                                                        const std::filesystem::path& session, const KeptBars& kept,
                                                        const BarsRequest& request);
 /// Reads the answers ("left" or "right"; empty: not answered) that a person entered in answers.csv. Errors:
-/// `invalid_input` with the file and line (another word, another number of decisions, pictures of another session, no
-/// answer).
+/// `invalid_input` with the file and line (a word other than "left" or "right", a wrong number of rows, pictures of a
+/// different session, no answer at all).
 [[nodiscard]] Result<BarsSitting> read_bars_answers(const std::filesystem::path& folder,
                                                     const std::filesystem::path& session, const KeptBars& kept);
 

@@ -23,13 +23,13 @@ void withhold_undecided(std::vector<PairedRatio>& ratios, const PackageResult& w
 [[nodiscard]] int exit_code(const PackageResult& result);
 /// Returns the acuity of a point that has a threshold with an interval.
 [[nodiscard]] std::optional<double> identified_acuity_per_mrad(const TodPoint& point);
-/// Gain and noise of a judged point, averaged over its set-ups. Only exists with stages behind the camera.
+/// Gain and noise of a judged point, averaged over its set-ups. Only exists with stages after the camera.
 struct JudgedPoint {
-  double gain = 0;        ///< contrast behind the stages divided by the contrast in front of them
+  double gain = 0;        ///< contrast after the stages divided by the contrast before them
   double gain_error = 0;  ///< standard error
-  double noise_k = 0;     ///< noise that is passed to the observer, referred to the contrast in front of the stages
+  double noise_k = 0;     ///< noise that is passed to the observer, referred to the contrast before the stages
 };
-/// Returns gain and noise at a contrast; empty without stages behind the camera.
+/// Returns gain and noise at a contrast; empty without stages after the camera.
 [[nodiscard]] std::optional<JudgedPoint> judged_point(const PackageResult& result, double set_delta_t_k);
 /// Returns a sentence if the gains at two contrasts differ by more than 5 % and more than four standard errors. The
 /// stages are then not linear, so that large and small triangles have different gains. Empty: no difference.

@@ -64,7 +64,7 @@ struct Enhancement {
 struct EnhancementOptions {
   std::function<void(const std::string& name)> on_package{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
-  int dither = 1;  ///< n: the simulated sensor observes n x n positions within a pixel in turn (dither_px())
+  int dither = 1;  ///< n: the simulated sensor observes n x n positions within a pixel in sequence (dither_px())
 };
 /// Simulates the plan's sensor with every effect, once without and once with each package, with the same random
 /// numbers: the exposures are identical bit for bit. After a change of the target, exposures are discarded; their
@@ -88,7 +88,7 @@ struct EnhancementOptions {
                                                             const EnhancementOptions& options, std::stop_token stop);
 
 /// Returns the inputs with every effect simulated, because an effect that is negligible for the sensor alone may be
-/// important behind a package. Errors: `invalid_input`.
+/// important in combination with a package. Errors: `invalid_input`.
 [[nodiscard]] Result<ExperimentInputs> full_inputs(const LoadedPlan& loaded);
 /// Simulates one chain with every effect: sensor, modules of the sensor, and stages of the package (null: none). For an
 /// observer with an eye, also runs the observers at both limits of its open parameters, for add_spreads(). Errors are

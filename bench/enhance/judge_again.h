@@ -16,7 +16,7 @@ namespace todbench {
 /// Observer, package and display of the new judgement. An empty member keeps the choice of the session.
 struct JudgeRequest {
   std::string observer{};                       ///< name or file
-  std::optional<EnhancementPackage> package{};  ///< package behind the camera and its twin
+  std::optional<EnhancementPackage> package{};  ///< package applied to the pictures of the camera and of its twin
   std::optional<ViewedDisplay> display{};       ///< display for an observer with an eye
 };
 

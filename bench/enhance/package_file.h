@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Enhancement package: a sequence of stages behind the camera, read from a file.
+// Enhancement package: a sequence of stages after the camera, read from a file.
 #pragma once
 
 #include <array>
@@ -58,11 +58,11 @@ struct EnhancementPackage {
 /// with one sample per pixel of the camera.
 [[nodiscard]] Result<void> refuse_finer_pictures(const EnhancementPackage& package, std::string_view what);
 
-/// Returns the largest distance, in samples, over which a picture influences a sample behind the stages; empty if the
+/// Returns the largest distance, in samples, over which a picture influences a sample after the stages; empty if the
 /// whole picture has an influence.
 [[nodiscard]] std::optional<int> reach_px(const EnhancementPackage& package);
 
-/// Function that creates the stages of a package anew for every use, and their reach.
+/// Function that creates new stages of a package for every use, and the reach of these stages.
 struct PackageStages {
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages;
   std::optional<int> reach_px{};  ///< as reach_px()

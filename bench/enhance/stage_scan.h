@@ -23,8 +23,8 @@ struct StageScan {
 /// requested position, as super_resolution_stage() assumes with FrameShifts::scan. Frames taken while the target
 /// changes are counted in k, but the plate is not moved for them. Sequence numbers continue without the dropped frames,
 /// so that lost frames remain detectable. ScanWatch checks with the frames whether the plate really moves. Call before
-/// the bench is recorded. Returns the note of the session about the scan. Errors: `invalid_input` if the target does
-/// not set shifts, or the pixel has no size. A move that fails ends the run with `integrity`, or `interrupted`.
+/// the bench is recorded. Returns a note about the scan for the session. Errors: `invalid_input` if the target does not
+/// set shifts, or the pixel has no size. A move that fails ends the run with `integrity`, or `interrupted`.
 [[nodiscard]] Result<std::string> scan_with_stage(OpenedBench& bench, const StageScan& scan);
 
 /// Returns the required number of positions within a pixel along each axis, for each super-resolution stage of the

@@ -9,13 +9,13 @@
 
 namespace todbench {
 
-/// Forecasts the bill of a measurement. The bill states the times of target changes, location of the plate and
-/// contrasts, presentations of each contrast, and physical measures, as bench_time() counts them. It also states the
+/// Forecasts the bill of a measurement. The bill contains the times of target changes, location of the plate and
+/// contrasts, presentations of each contrast, and physical measures, as bench_time() counts them. It also contains the
 /// predicted half-widths, the rows of the budget that presentations do not reduce, the least time for the limits on
 /// acuity, and the effects left out. `total_s`: bench time of the run, without warm-up and computing. Empty for a
 /// simulated scene, which is as fast as the processor. Errors: those of predict_plan() and curve_uncertainty().
 [[nodiscard]] Result<AccuracyBill> bill_forecast(const Plan& plan, const ExperimentInputs& inputs);
-/// Loads the inputs first. Errors: also those of experiment_inputs().
+/// Loads the inputs of the plan and forecasts with the overload above. Errors: also those of experiment_inputs().
 [[nodiscard]] Result<AccuracyBill> bill_forecast(const LoadedPlan& loaded);
 
 }  // namespace todbench

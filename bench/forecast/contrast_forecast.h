@@ -19,10 +19,11 @@ namespace todbench {
 /// curve.
 [[nodiscard]] std::vector<double> expected_contrast_effects(const std::vector<ContrastPrediction>& contrasts);
 
-/// Returns the half-width of ln S75 that the scatter of a measured contrast causes alone, as AdaptiveSchedule computes
-/// it after the set-up in which half of the runs end. `looks`: number of measurements of the contrast in each set-up. A
-/// measurement averages `contrast_frames`, or the frames of a presentation if presentations have contrasts of their
-/// own. The noise comes from the sensor's file: fixed pattern, and temporal noise averaged over these frames.
+/// Returns the half-width of ln S75 due to the scatter of a measured contrast alone. It is the value that
+/// AdaptiveSchedule computes after the set-up in which half of the runs end. `looks`: number of measurements of the
+/// contrast in each set-up. A measurement averages `contrast_frames`, or the frames of a presentation if the contrast
+/// is measured in each presentation. The noise comes from the file of the sensor: fixed pattern, and temporal noise
+/// averaged over these frames.
 [[nodiscard]] double contrast_half_width(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
                                          const std::vector<int>& looks, double slope);
 
@@ -37,10 +38,10 @@ void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Pla
 [[nodiscard]] Result<std::optional<int>> enough_contrast_frames(
     Plan plan, const ExperimentInputs& inputs, const std::function<bool(const ContrastPrediction&)>& enough);
 
-/// Returns the frames of the measured contrast with which presentations decide a limit for a camera of the predicted
-/// acuity: the scatter of the contrast then causes at most half of the half-width that decides. `floor_ln`: half-width
-/// of the stated rows. Empty if presentations decide with the plan's number, if the stated rows alone prevent the
-/// decision, or if 64 times this number of frames is not enough. Errors: those of predict_plan().
+/// Returns the number of frames of the measured contrast that allows presentations to decide a limit, for a camera of
+/// the predicted acuity: the scatter of the contrast then causes at most half of the half-width that decides.
+/// `floor_ln`: half-width of the stated rows. Empty in three cases: the number of the plan is sufficient, the stated
+/// rows alone prevent the decision, or 64 times the number of the plan is not enough. Errors: those of predict_plan().
 [[nodiscard]] Result<std::optional<int>> deciding_contrast_frames(const Plan& plan, const ExperimentInputs& inputs,
                                                                   const ContrastPrediction& contrast,
                                                                   double least_acuity_per_mrad, double floor_ln);

@@ -57,7 +57,8 @@ struct CameraChance {
   DecisionChances chances;
 };
 
-/// One number of frames or phases of the plan, one rate of its ramp, or one half-width of its adaptive schedule.
+/// A variant of the plan: with a different number of frames or phases, a different rate of its ramp, or a different
+/// half-width of its adaptive schedule.
 struct DecisionDesign {
   std::vector<int> frames{};             ///< frames per presentation: one number for all contrasts, or one for each
   int phases = 0;                        ///< phases per set-up and contrast
@@ -90,7 +91,7 @@ struct DecisionForecast {
   double floor_percent = 0;                ///< half-width of all stated rows; 0: no budget
   double smallest_half_width_percent = 0;  ///< smallest_half_width_ln()
   std::vector<FloorRow> rows{};            ///< largest first
-  /// Half-width that the scatter of the measured contrast causes in the plan. More presentations do not reduce it.
+  /// Half-width due to the scatter of the measured contrast, as planned. More presentations do not reduce it.
   double contrast_percent = 0;
   /// Frames of the measured contrast from deciding_contrast_frames(); empty if the number of the plan need not change.
   std::optional<int> contrast_frames{};

@@ -58,7 +58,7 @@ struct BestDesign {
   std::optional<double> equivalence_half_width_percent{};
   /// Bench time of the best design whose contrasts settle, if `best` has a settling band.
   std::optional<double> settled_s{};
-  /// Bench time of the best design of another kind, if `best` is an adaptive schedule.
+  /// Bench time of the best design of a different kind, if `best` is an adaptive schedule.
   std::optional<double> not_adaptive_s{};
   /// The fastest ramp that meets the request; empty if the bench or the plan does not allow a ramp.
   std::optional<RampDesign> ramp{};

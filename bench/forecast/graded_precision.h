@@ -31,16 +31,22 @@ struct GradedDesignFigures {
 ///   (f - g) / F + (1 - f) / (F D) + r + g n s,   f = (3/4)^2 (Phi2(z, z; share) - (2/3)^2) / (p (1 - p)),
 ///   p = 3/4 = 1/4 + 3/4 Phi(z)
 ///
+/// F is the number of frames per presentation, D the number of draws per frame, and n the number of phases of a
+/// triangle of size S (in pitches).
+///
 /// f is the share of the sensor's noise in an answer at the threshold. The answer is correct by chance in a quarter of
 /// the cases; otherwise a Gaussian decision variable determines the answer. Phi2 is the probability that this variable
-/// makes two answers to the same frame correct. g is the share of the fixed pattern, which frames do not average. The n
-/// phases of a triangle of size S average the pattern only if they move the triangle across its detectors: s = 1.5
-/// exp(-(1.9 / S)^2), S in pitches. 1.5 applies to set-ups that place triangles on the same detectors (both numbers
-/// from 78 runs of `graded_coverage_study` with a pattern of 0.1 K). r is 0.048 over the number of phases, at most
-/// 0.15, if the mountings cancel the phases (five set-ups or more; 138 runs with 12 phases and 11 runs with 3 phases of
-/// `graded_coverage_study`). With fewer set-ups the phases do not cancel: 0.28 / (1 + (noise / 0.13)^2), because noise
-/// hides the position of a triangle between the detectors (48 runs of adaptive plans at 8 contrasts with the SC2000, 2
-/// to 5 set-ups).
+/// makes two answers to the same frame correct.
+///
+/// g is the share of the fixed pattern, which averaging over frames does not reduce. The phases average the pattern
+/// only if they move the triangle across its detectors: s = 1.5 exp(-(1.9 / S)^2). The factor 1.5 applies to set-ups
+/// that place triangles on the same detectors (both numbers from 78 runs of `graded_coverage_study` with a pattern of
+/// 0.1 K).
+///
+/// r is 0.048 divided by the number of phases, at most 0.15, if the mountings cancel the phases (five set-ups or more;
+/// 138 runs with 12 phases and 11 runs with 3 phases of `graded_coverage_study`). With fewer set-ups the phases do not
+/// cancel, and r is 0.28 / (1 + (noise / 0.13)^2), because noise hides the position of a triangle between the detectors
+/// (48 runs of adaptive plans at 8 contrasts with the SC2000, 2 to 5 set-ups).
 ///
 /// For first-order noise of lag-1 correlation rho, the answers to two frames at a distance of k frames have in common
 /// the share
@@ -53,10 +59,11 @@ struct GradedDesignFigures {
 /// 1 + g (n s - 1), plus the covariances of successive presentations.
 [[nodiscard]] double pattern_inflation(const GradedDesignFigures& design);
 
-/// Returns the variance of the ln ratio of camera and twin by common phases, divided by the variance of the same number
-/// of binary answers. The phases are common and cancel. The remaining terms are the noise of the camera's frames with
-/// its fixed pattern, the observer's noise, and the noise of the twin's answers. Each answer of the twin is the mean
-/// over `twin_draws` frames of its own. The variance does not contain the scatter of the effective contrast.
+/// Returns the variance of the ln ratio of camera and twin if both are measured at common phases, divided by the
+/// variance of the same number of binary answers. The effects of the phases cancel. The remaining terms are the noise
+/// of the camera's frames with its fixed pattern, the observer's noise, and the noise of the twin's answers. Each
+/// answer of the twin is the mean over `twin_draws` independent frames of the twin. The variance does not contain the
+/// scatter of the effective contrast.
 [[nodiscard]] double paired_variance_ratio(const GradedDesignFigures& design, int twin_draws);
 
 /// Choices for the number of frames per presentation.
@@ -69,8 +76,8 @@ inline constexpr std::array frame_choices{1, 2, 4, 8};
 
 /// Returns the half-width of a 95 % interval of ln S75 divided by the standard error: Student's t times
 /// graded_likely_excess(). The second factor covers 95 % of runs, because a variance from few set-ups scatters as
-/// chi-square over its degrees of freedom. From five set-ups on the result includes 1.06, the root of the chance share
-/// of detectors common to set-ups (clustered_variance.h).
+/// chi-square over its degrees of freedom. With five set-ups or more, the result includes the factor 1.06 for the
+/// detectors that set-ups have in common by chance (clustered_variance.h).
 [[nodiscard]] double graded_interval_factor(const GradedDesignFigures& design);
 /// Returns the ratio of estimated to true standard error that 19 of 20 estimates with these degrees of freedom do not
 /// exceed.

@@ -16,13 +16,13 @@ struct PrecisionChoice {
   std::vector<int> frames{1};  ///< frames per presentation: one number for all contrasts, or one for each
   std::vector<ContrastPrediction> contrasts{};
   std::optional<double> half_width_percent{};  ///< half of the 95 % interval of S75, the largest over the contrasts
-  double bench_s = 0;                          ///< time on the bench alone; 0 without a camera
+  double bench_s = 0;                          ///< time on the bench only; 0 without a camera
   double seconds = 0;    ///< time of the measurement with the camera, or of the simulation if the plan has no camera
   bool planned = false;  ///< true for the plan itself
   /// True for the graded choice with the smallest squared half-width times bench time (without a camera, simulation
-  /// time). Bench time does not depend on the load of the computer, which therefore changes no recommendation. The
-  /// half-width contains the rows of the budget, which frames do not reduce; with these rows, the recommended choice is
-  /// the fastest within 5 % of the smallest product.
+  /// time). The recommendation does not depend on the load of the computer, because bench time does not. The half-width
+  /// contains the rows of the budget, which frames do not reduce; with these rows, the recommended choice is the
+  /// fastest within 5 % of the smallest product.
   bool recommended = false;
 };
 

@@ -15,26 +15,26 @@ namespace todbench {
 /// Prediction of one contrast.
 struct ContrastPrediction {
   double delta_t_k = 0;
-  std::optional<double> s75_mrad;  ///< from the planner's first tier; empty: no threshold is expected
+  std::optional<double> s75_mrad;  ///< by CuedEstimate; empty: no threshold is expected
   /// Half-width of the 95 % interval of S75 from the trials, binary or graded as planned (graded_precision.h), which 95
   /// % of runs do not exceed. For an adaptive schedule, the requested half-width, or the half-width that its cap
   /// allows. Empty: not identified.
   std::optional<double> uncertainty_percent;
   double trials = 0;  ///< number of trials of the simulation
-  /// Expected standard error of ln S75, without the margin for unlucky runs of `uncertainty_percent`; 0: not
+  /// Expected standard error of ln S75, without the margin for unlucky runs that `uncertainty_percent` includes; 0: not
   /// identified.
   double se_ln_s75 = 0;
   /// Half-width of the 95 % interval of ln S75 over its own standard error.
   double interval_factor = 0;
   std::optional<double> degrees_of_freedom{};  ///< degrees of freedom of `se_ln_s75`; empty: infinite
-  /// Half-width of ln S75 that the scatter of the measured contrast causes alone; more presentations do not reduce it.
-  /// It is part of the half-width above.
+  /// Half-width of ln S75 due to the scatter of the measured contrast alone; more presentations do not reduce it. It is
+  /// part of `uncertainty_percent`.
   double contrast_half_width = 0;
-  /// Half-width at which an adaptive schedule is expected to stop, in percent; empty for another schedule, or if it is
-  /// not expected to stop before its cap.
+  /// Half-width at which an adaptive schedule is expected to stop, in percent; empty for a different schedule, or if it
+  /// is not expected to stop before its cap.
   std::optional<double> stopped_at_percent{};
-  /// Standard error of the ln ratio of camera and twin by common phases, with the same margin as `uncertainty_percent`;
-  /// empty: the plan contains no paired comparison.
+  /// Standard error of the ln ratio of camera and twin if both are measured at common phases, with the same margin as
+  /// `uncertainty_percent`; empty: the plan contains no paired comparison.
   std::optional<double> paired_se_ln_ratio{};
 };
 

@@ -27,7 +27,7 @@ struct TimePrediction {
 [[nodiscard]] Result<double> predict_estimate_s(const ExperimentInputs& inputs, std::stop_token stop);
 
 /// Returns the draws per size for which the direct estimate meets the requested standard error, which is about (0.046 +
-/// 0.285 q) / sqrt(draws) of S75. Not capped.
+/// 0.285 q) / sqrt(draws) of S75. The result is not limited.
 [[nodiscard]] double needed_draws(const Accuracy& accuracy, double q_eff);
 
 }  // namespace todbench

@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Unit under test. The same camera with another lens is another unit.
+/// Unit under test. The same camera with a different lens is a different unit.
 struct HistoryUnit {
   std::string vendor, model, serial, lens;
   bool operator==(const HistoryUnit&) const = default;

@@ -38,8 +38,8 @@ inline constexpr double gross_contrast_deviation = 1.0 / 3;
 /// allowed_contrast_deviation(). Empty for contrasts in grey levels.
 [[nodiscard]] std::map<double, double> gross_contrast_deviations(const Plan& plan);
 
-/// Returns the relative deviation of the effective contrast at this point from the set contrast behind the stated air;
-/// empty without a camera contrast in kelvin.
+/// Returns the relative deviation of the effective contrast at this point from the set contrast attenuated by the
+/// stated air; empty without a camera contrast in kelvin.
 [[nodiscard]] std::optional<double> contrast_deviation(const Plan& plan, const TodPoint& point,
                                                        std::span<const Presentation> presentations);
 

@@ -126,7 +126,7 @@ struct MeasuredQuantity {
   Interval ci95{};
 };
 
-/// Input of judge(). Borrows for the call.
+/// Input of judge(). The objects to which it refers must exist during the call.
 struct JudgementInput {
   const LimitsPlan& limits;
   const TodCurve& curve;  ///< curve; has no points if the run ended before the first point

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Air path on the bench: transmittance by humidity.
+// Transmittance of the air between target and camera on the bench, computed from the humidity.
 #pragma once
 
 #include "acquisition/base/result.h"
@@ -17,11 +17,12 @@ struct BenchAir {
 /// gas.
 [[nodiscard]] double absolute_humidity_g_m3(const BenchAir& air);
 
-/// Returns the transmittance for a contrast over `length_m`, from the shipped tables without aerosol. The optical depth
-/// of the model atmospheres at this length is interpolated linearly in their absolute humidity, and extrapolated beyond
-/// the most humid atmosphere up to 30 g/m3. The band models are extrapolated to a few metres, so the uncertainty of the
-/// loss is large (bench_air_relative_half_width). Errors: `invalid_input` (no table band is near, more than 30 g/m3 of
-/// water, a length of 0 or less or beyond the tables).
+/// Returns the factor by which `length_m` of air reduces a contrast, from the shipped tables without aerosol. The
+/// optical depth of the model atmospheres at this length is interpolated linearly in their absolute humidity, and
+/// extrapolated beyond the most humid atmosphere up to 30 g/m3. The band models of the tables are extrapolated to paths
+/// of a few metres, so the uncertainty of the loss is large (bench_air_relative_half_width). Errors: `invalid_input`
+/// (no band of the tables is near `band`; more than 30 g/m3 of water vapour; a length that is not positive, or longer
+/// than the tables).
 [[nodiscard]] Result<double> bench_transmittance(const BenchAir& air, double length_m, const SpectralBand& band);
 
 /// Half-width of the uncertainty of the loss 1 - transmittance, as a share of the loss.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks of keys of camera, target, instruments and modules against the rest of the plan. Each returns the mistakes of
-// the value; its comment states the condition for a correct one.
+// Checks of keys of camera, target, instruments and modules against the rest of the plan. Each function returns the
+// mistakes in a value. Its comment states the condition for a correct value.
 #pragma once
 
 #include <chrono>
@@ -25,10 +25,10 @@ namespace todbench {
 [[nodiscard]] ValueMistakes check_display_pixel(const Plan& plan, std::size_t row);
 /// Requires, for kind display, a number above 0 and at least the largest contrast.
 [[nodiscard]] ValueMistakes check_display_span(const Plan& plan, std::size_t row);
-/// Requires at least two luminances in rising order; a table of more than two excludes display_gamma.
+/// Requires at least two luminances in rising order. With more than two, display_gamma must not be stated.
 [[nodiscard]] ValueMistakes check_display_luminance(const Plan& plan, std::size_t row);
-/// Requires kelvin if the plan requests physical measures in kelvin (all but the gain control) or has modules behind
-/// the camera.
+/// Requires kelvin if the plan requests physical measures in kelvin (all but the gain control) or has modules after the
+/// camera.
 [[nodiscard]] ValueMistakes check_contrast_unit(const Plan& plan, std::size_t row);
 /// Requires contrasts other than 0 K, without duplicates.
 [[nodiscard]] ValueMistakes check_contrasts(const Plan& plan, std::size_t row);
@@ -44,7 +44,8 @@ namespace todbench {
 [[nodiscard]] ValueMistakes check_due_date(const Plan& plan, std::size_t row);
 /// Requires a command that is not empty.
 [[nodiscard]] ValueMistakes check_module_command(const Plan& plan, std::size_t row);
-/// Requires at most one observer, and binary answers with it; no module if the function of the twin is fitted.
+/// Requires at most one module with place observer, binary answers if there is such a module, and no module if the
+/// function of the twin is fitted.
 [[nodiscard]] ValueMistakes check_module_place(const Plan& plan, std::size_t row);
 
 /// Parses "YYYY-MM-DD"; empty if the text is not an existing day.

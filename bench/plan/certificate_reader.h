@@ -44,8 +44,9 @@ struct InstrumentCertificate {
 
 /// Fills in the serial number and the certificate of an instrument from its file `dcc`, relative to `folder`. Adds the
 /// row of a black body to the budget. Clears `dcc`, because the plan then contains all values. Errors: `invalid_input`
-/// (file too large, parse_certificate(), another serial number or certificate than stated, an instrument without a
-/// role, a quantity for an instrument that is not a black body, a second row for the calibration of the black body).
+/// (file too large, parse_certificate(), a serial number or certificate that differs from the stated one, an instrument
+/// without a role, a quantity for an instrument that is not a black body, a second row for the calibration of the black
+/// body).
 [[nodiscard]] Result<void> apply_certificate(Plan& plan, std::size_t row, const std::filesystem::path& folder);
 
 }  // namespace todbench

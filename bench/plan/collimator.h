@@ -28,8 +28,8 @@ inline constexpr std::string_view mirrors_row = "mirrors of the collimator";
 inline constexpr std::string_view aberration_row = "aberration of the collimator";
 
 /// Returns the budget of the plan with the rows of the collimator, which replace rows of the same names; unchanged
-/// without a collimator or without a budget.
-/// The entrance pupil has no effect behind a collimator: its row is 0.
+/// without a collimator or without a budget. With a collimator, the position of the entrance pupil has no effect, so
+/// its row is 0.
 [[nodiscard]] UncertaintyPlan budget_with_collimator(const Plan& plan, const SpectralBand& band);
 
 }  // namespace todbench

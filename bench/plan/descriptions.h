@@ -32,9 +32,10 @@ struct DescribedObserver {
 [[nodiscard]] Result<TemplateObserverSpec> load_observer(std::string_view reference);
 /// Loads an observer, with or without an eye, that looks at `display`.
 [[nodiscard]] Result<TemplateObserverSpec> load_observer_at(std::string_view reference, const ViewedDisplay& display);
-/// Fails if the observer has an eye, for work that does not model a display: "WORK does not model ...".
+/// Fails if the observer has an eye, with the message "WORK does not model ...". Use it for work that does not model a
+/// display.
 [[nodiscard]] Result<void> refuse_eye(const TemplateObserverSpec& observer, std::string_view work);
-/// Fails with `invalid_input` at `origin` if the observer has no eye, for work that needs one.
+/// Fails with `invalid_input` at `origin` if the observer has no eye. Use it for work that requires an eye.
 [[nodiscard]] Result<void> require_eye(const TemplateObserverSpec& observer, std::string_view origin);
 /// Loads a plate. Rows of cut-outs: [[row]] size_mm, y_mm, x_mm = [...], apex = ["up", ...], optionally names = [...];
 /// default names are "row R, triangle T", counted from 1. Rectangles: [[rectangle]] x_mm, y_mm, width_mm, height_mm,

@@ -525,8 +525,8 @@ struct Plan {
   UncertaintyPlan uncertainty;
   std::vector<InstrumentPlan> instruments;
   OrderPlan order{};  ///< all defaults: not stated
-  /// Rows of [[module]]. Modules of place picture run in this order behind camera and twin. At most one has place
-  /// observer.
+  /// Rows of [[module]]. Modules of place picture run in this order after the camera and its twin. At most one has
+  /// place observer.
   std::vector<ModulePlan> modules{};
   bool operator==(const Plan&) const = default;
 };

@@ -21,7 +21,7 @@ struct FormLine {
   std::string_view label{};        ///< label without unit
   std::string_view object_name{};  ///< name of the widget
   /// Repeated section only: path of the list of numbers whose elements are the values of the first key. The other keys
-  /// become columns next to that list. If empty, the rows form a table of their own with names and numbers.
+  /// become columns next to that list. If empty, the rows form a separate table with names and numbers.
   std::string_view beside{};
 };
 
@@ -117,12 +117,13 @@ struct KeyAt {
 };
 /// Finds a key by path. Precondition: the table has the path.
 [[nodiscard]] KeyAt plan_key(std::string_view path);
-/// Returns the value in a plan of defaults, in a new row if the section is repeated.
+/// Returns the value that a default plan has for this key; in a new row if the section is repeated.
 [[nodiscard]] KeyValue default_of(const KeyAt& key);
 /// Returns the type with the range narrowed by the rest of the plan.
 [[nodiscard]] KeyType type_in(const PlanKey& key, const Plan& plan);
 
-/// Returns the name of the key that the table uses; `key.name` if absent.
+/// Returns the name under which the table contains the key (`name` or one of `other_names`); `key.name` if the key is
+/// absent.
 [[nodiscard]] std::string_view name_in(const TomlReader& table, const PlanKey& key);
 /// Returns the tables of a repeated section, found by the last part of its name or by an alternative name.
 [[nodiscard]] std::vector<TomlReader> rows_in(TomlReader& parent, const PlanSection& section);

@@ -28,7 +28,7 @@ enum class Side {
                                                      double ifov_mrad);
 /// Returns the options for the camera of the plan, with its contrast unit.
 [[nodiscard]] MeasurementOptions camera_options(const Plan& plan, const std::vector<TargetPlate>& plates);
-/// Returns every plate (by its own name) in every mounting at every contrast, with the phases of the side.
+/// Returns every plate (by the name of the plate) in every mounting at every contrast, with the phases of the side.
 [[nodiscard]] ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                      double ifov_mrad, Side side);
 /// Returns the ramp of a plan of kind ramp, for the camera.
@@ -40,9 +40,8 @@ enum class Side {
 [[nodiscard]] Plan with_limits_in_ramp(Plan plan);
 /// Returns whether the contrast of each presentation is measured from its own frames.
 [[nodiscard]] bool has_own_contrasts(const Plan& plan);
-/// Returns the schedule of the plan. `ifov_mrad`: as for stimuli_options(). `functions`:
-/// psychometric functions of the twin by contrast; the stopping rule of an adaptive schedule uses them if they are
-/// fitted.
+/// Returns the schedule of the plan. `ifov_mrad`: as for stimuli_options(). `functions`: psychometric functions of the
+/// twin by contrast. The stopping rule of an adaptive schedule uses them if they are fitted.
 [[nodiscard]] std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                            double ifov_mrad, Side side, const RandomStream& stream,
                                                            std::map<double, ProportionTable> functions = {});

@@ -15,7 +15,7 @@
 
 namespace todbench {
 
-/// Keys that scenes, targets and sets share.
+/// Ranges of values that scenes, targets and sets share.
 inline const NumberRange scene_kelvin_range = NumberRange::between(100, 5000);
 inline const NumberRange scene_share_range = NumberRange::between(0, 1);
 

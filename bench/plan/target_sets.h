@@ -34,7 +34,7 @@ struct TargetSet {
 };
 /// Loads a target set by name ("small-craft") or file. Files that it names are relative to its folder. Without readers
 /// a set of pictures is refused. Errors: `invalid_input` with the file (as load_scene(); a picture without a target, a
-/// target that touches the edge of its region, pixels without temperature, a mask of another size), those of readers.
+/// target that touches the edge of its region, pixels without temperature, a mask of a wrong size), those of readers.
 [[nodiscard]] Result<TargetSet> load_target_set(std::string_view reference, const SetReaders& readers = {});
 
 /// Region of a picture and its target, as a set describes them.

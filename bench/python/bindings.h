@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parts of the Python module. Each source file adds the classes and functions of a few folders, and contains no
-// computations of its own.
+// computations.
 #pragma once
 
 #include <optional>

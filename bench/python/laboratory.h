@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emulated laboratory in the Python module. Only its source file is compiled with the flags of the camera libraries.
+// Binding of the emulated laboratory for the Python module. Only laboratory.cpp depends on whether the build has the
+// camera libraries.
 #pragma once
 
 #include <pybind11/pybind11.h>

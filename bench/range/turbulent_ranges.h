@@ -15,7 +15,7 @@
 
 namespace todbench {
 
-/// Inputs of the range models behind a turbulent path of constant Cn2 and given length. Immutable.
+/// Inputs of the range models for a turbulent path of constant Cn2 and given length. Immutable.
 class TurbulentSources {
  public:
   /// Prepares the sources. `still`: sources without turbulence, with a sensor. Thresholds of the TOD curve change by
@@ -27,9 +27,9 @@ class TurbulentSources {
                                                    const std::optional<TemplateObserverSpec>& observer, double cn2,
                                                    double longest_m);
 
-  /// Returns the thresholds behind a path of this length. A contrast without a threshold is left out.
+  /// Returns the thresholds through a path of this length. A contrast without a threshold is left out.
   [[nodiscard]] std::vector<TodThreshold> thresholds_at(std::span<const TodThreshold> still, double path_m) const;
-  /// Returns the sources behind a path of this length.
+  /// Returns the sources for a path of this length.
   [[nodiscard]] RangeSources at(double path_m) const;
   /// Returns the sensor with a path of this length.
   [[nodiscard]] SensorSpec sensor_at(double path_m) const;
@@ -65,8 +65,9 @@ struct TurbulenceDecision {
 [[nodiscard]] TurbulenceDecision decide_turbulence(const SensorSpec& sensor, double cn2, const RangeQuestion& question,
                                                    std::optional<double> still_r75_m, double tolerance_percent);
 
-/// Evaluates the models as range_models() does, with turbulence. Each range is computed with the curve behind a path of
-/// that range. P is interpolated between 16 paths. Sensitivities are computed with the curve behind the path of R75.
+/// Evaluates the models as range_models() does, with turbulence. Each range is computed with the curve for a path of
+/// that length. P is interpolated between 16 paths. Sensitivities are computed with the curve for the path of length
+/// R75.
 [[nodiscard]] Result<std::vector<ModelRange>> turbulent_range_models(std::span<const RangeModel> asked,
                                                                      const TurbulentSources& sources,
                                                                      const RangeQuestion& question);

@@ -35,7 +35,7 @@ struct AccuracyBill {
   std::vector<std::string> sentences;
 };
 
-/// Input of accuracy_bill(). Borrows for the call.
+/// Input of accuracy_bill(). The objects to which it refers must exist during the call.
 struct BillInput {
   std::span<const Presentation> presentations;
   const TodCurve& curve;
@@ -52,11 +52,12 @@ struct BillInput {
 /// Divides the time of a run into parts. A presentation begins when the target is in place and ends when the next
 /// change of the target begins. The first presentation of a set-up or a contrast also locates the plate and measures
 /// the contrast. The time for this is the excess over the median of the other presentations at the same contrast. If
-/// there are no other presentations, this time is the excess over the forecast; without a forecast, the location has no
-/// time. If the presentations have no times, all time except the time of the physical measures counts as computing. The
-/// least time for the verdict keeps the set-ups. It assumes that the half-width from the trials falls with the square
-/// root of the number of presentations. It keeps at least one presentation for each set-up, and at least
-/// `least_graded_presentations` for graded answers.
+/// there are no other presentations, it is the excess over the forecast; without a forecast, it is not separated. If
+/// the presentations have no times, all time except the time of the physical measures counts as computing.
+///
+/// The least time for the verdict is the time with the fewest presentations that are sufficient for it, in the same
+/// set-ups. The half-width from the trials is assumed to decrease with the square root of the number of presentations.
+/// Each set-up keeps at least one presentation, and for graded answers at least `least_graded_presentations` remain.
 [[nodiscard]] AccuracyBill accuracy_bill(const BillInput& input);
 
 /// Returns one sentence for each reason for which the simulation leaves out effects: below the tolerance (with the

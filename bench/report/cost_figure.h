@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measured frontier of accuracy and time as figures and as a table.
+// Measured trade-off between accuracy and computing time (frontier) as figures and as a table.
 #pragma once
 
 #include <string>

@@ -15,7 +15,7 @@ namespace todbench {
 /// limits.
 struct CurveLines {
   std::vector<double> delta_t_k;       ///< set contrasts, in this order
-  const TodCurve* measured = nullptr;  ///< borrowed; null: not yet known
+  const TodCurve* measured = nullptr;  ///< not owned; null: not yet known
   const TodCurve* twin = nullptr;
   std::vector<AcuityLimit> limits{};
 };

@@ -8,8 +8,8 @@
 
 namespace todbench {
 
-/// Returns sentences about the psychometric function and its fit. If it is the function of the twin, they also name
-/// contrasts that have a Weibull function instead, with the reason.
+/// Returns sentences about the psychometric function and its fit. If the function of the twin was fitted, the sentences
+/// also list the contrasts for which a Weibull function was fitted instead, with the reason.
 [[nodiscard]] std::string form_in_words(const ReportData& data);
 /// Returns sentences about the kind of answers, preceded by a space; empty if unknown. States the number of frames for
 /// each contrast if the numbers differ, and describes the twin separately if its answers differ.

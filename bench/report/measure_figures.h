@@ -18,7 +18,7 @@ namespace todbench {
 [[nodiscard]] std::optional<FigurePairs> transfer_figures(const SessionMeasures& measures, bool camera);
 /// Returns one figure for each position and axis: camera with intervals, twin, closed form.
 [[nodiscard]] std::optional<FigurePairs> mtf_figures(const SessionMeasures& measures, bool camera);
-/// Returns figures of the drift, of the camera alone.
+/// Returns figures of the drift; for the camera only.
 [[nodiscard]] std::optional<FigurePairs> drift_figures(const SessionMeasures& measures, bool camera);
 /// Returns figures of the response to contrast steps.
 [[nodiscard]] std::optional<FigurePairs> response_figures(const SessionMeasures& measures, bool camera);
@@ -28,11 +28,11 @@ namespace todbench {
 [[nodiscard]] std::optional<FigurePairs> ctf_figures(const SessionMeasures& measures, bool camera);
 /// Returns figures of the loss of apertures and the gain of opaque spots against their size, with the fitted curve.
 [[nodiscard]] std::optional<FigurePairs> source_size_figures(const SessionMeasures& measures, bool camera);
-/// Returns figures of the temperature error against temperature, of the camera alone.
+/// Returns figures of the temperature error against temperature; for the camera only.
 [[nodiscard]] std::optional<FigurePairs> absolute_figures(const SessionMeasures& measures, bool camera);
-/// Returns histograms of the latency over the frames of all runs, of the camera alone.
+/// Returns histograms of the latency over the frames of all runs; for the camera only.
 [[nodiscard]] std::optional<FigurePairs> latency_figures(const SessionMeasures& measures, bool camera);
-/// Returns figures of the levels against contrast and of the settling after steps, of the camera alone.
+/// Returns figures of the levels against contrast and of the settling after steps; for the camera only.
 [[nodiscard]] std::optional<FigurePairs> gain_control_figures(const SessionMeasures& measures, bool camera);
 /// Returns a figure of the remaining part of contrast steps over time, with the fitted first-order response; empty if
 /// it cannot be drawn.

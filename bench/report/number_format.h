@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers for people: independent of the locale, with as many digits as their interval justifies. NaN is shown as a
-// dash.
+// Numbers as text for readers: independent of the locale, with as many digits as their interval justifies. NaN is shown
+// as a dash.
 #pragma once
 
 #include <optional>

@@ -11,7 +11,7 @@
 namespace todbench {
 
 /// Parses "tod", "mrtd", "edge", "ramp", "siemens", "flat" with default options, or "flat:0.25" with a level. Errors:
-/// `invalid_input` (another name or level).
+/// `invalid_input` (a different name or level).
 [[nodiscard]] Result<PictureKind> picture_kind_named(std::string_view name);
 /// Returns the name of a kind of picture.
 [[nodiscard]] std::string_view name_of(const PictureKind& kind);

@@ -55,7 +55,8 @@ struct ReproducedRange {
 /// Content of the page.
 struct Reproduction {
   std::string title, source;
-  /// Observer that distinguishes the curves, named as in thresholds and ranges. Other observers represent people.
+  /// Observer whose identification curves the figure shows, named as in thresholds and ranges. The other observers
+  /// represent people.
   std::string model_observer;
   std::vector<std::string> simulated_sensors, cameras;
   std::vector<ReproducedFigure> figures;

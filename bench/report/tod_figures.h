@@ -29,16 +29,16 @@ struct AnswersAtSize {
 [[nodiscard]] Interval wilson_interval(double correct, double total);
 
 /// Returns the 95 % interval of the proportion at a size. Binary answers: Wilson's interval, with all answers treated
-/// as independent. Graded answers scatter less than binomially. Their interval is therefore m -+ t s over K
-/// presentations, limited to 0 and 1, with s^2 = K / (K - 1) sum (c - m n)^2 / N^2 for the ratio of sums m. The
-/// interval is open for fewer than two presentations, and wider than necessary if the effects of the phases in a set-up
-/// cancel.
+/// as independent. Graded answers scatter less than binomially. Their interval is therefore m -+ t s, limited to 0 and
+/// 1, with s^2 = K / (K - 1) sum (c - m n)^2 / N^2. The sum is over the K presentations, each with n trials and the sum
+/// c of their graded answers. N is the number of all trials, m = sum c / N, and t is Student's t. The interval is open
+/// for fewer than two presentations, and wider than necessary if the effects of the phases in a set-up cancel.
 [[nodiscard]] Interval proportion_interval(const AnswersAtSize& answers);
 
 /// Curve with its name in figures.
 struct NamedCurve {
   std::string name;                 ///< "measured", "simulated"
-  const TodCurve* curve = nullptr;  ///< borrowed for the call; null: absent
+  const TodCurve* curve = nullptr;  ///< not owned; null: absent
 };
 
 /// Least acuity that a limit requires at a contrast.
@@ -56,7 +56,7 @@ struct DrawnLimit {
 /// Point of a curve with its name. A null point is not drawn.
 struct NamedPoint {
   std::string name;
-  const TodPoint* point = nullptr;  ///< borrowed for the call
+  const TodPoint* point = nullptr;  ///< not owned
 };
 /// Returns the plot of the proportion correct with its intervals (proportion_interval()) against size, with fitted
 /// functions, 75 % and 25 % lines and the 95 % intervals of the thresholds. `id` is unique on the page. The size axis

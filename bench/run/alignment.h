@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alignment of a bench: the present position of the plate in the picture, and its faults.
+// Alignment of a bench: the present position of the plate in the picture, and the reasons why it cannot be measured
+// yet.
 #pragma once
 
 #include <functional>

@@ -31,17 +31,19 @@ struct ExperimentListener {
   std::function<void(std::string_view phase)> on_phase{};
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
   std::function<void(std::string_view sentence)> on_note{};
-  /// The camera is lost, and the run waits for it for at most `patience` (0 in a replay). Also reported as a note.
+  /// Called when the camera is lost. The run waits for the camera for at most `patience` (0 in a replay). A note also
+  /// reports the loss.
   std::function<void(const SourceInfo& camera, std::chrono::milliseconds patience)> on_lost{};
   /// Called while the run waits for the target, and with an empty value when the wait ends.
   OnTargetWait on_wait{};
-  /// The session folder exists and contains the plan.
+  /// Called when the session folder exists and contains the plan.
   std::function<void(const std::filesystem::path& folder)> on_session{};
   std::function<void(const SourceInfo&)> on_open{};
-  /// Every frame of the camera as it arrives, valid or not. Not called for frames of the twin.
+  /// Called for every frame of the camera as it arrives, valid or not. Not called for frames of the twin.
   std::function<void(const Frame&)> on_frame{};
   std::function<void(SessionCurve, const SetUpRecord&)> on_set_up{};
-  /// A trial that is on disk, and its judged patch, valid during the call.
+  /// Called when a trial has been written to the disk. The patch is the one that the observer judged; the reference to
+  /// it is valid only during the call.
   std::function<void(SessionCurve, const Trial&, const Patch&)> on_trial{};
 };
 
@@ -72,12 +74,13 @@ struct ExperimentOutcome {
   std::optional<CurveUncertainty> uncertainty{};  ///< uncertainty of `curve`; empty if the plan has no budget
 };
 
-/// Measures with the devices of the plan, simulates its twin and compares. Fails if no data could be measured: without
-/// a folder if a device cannot be opened, otherwise with a folder marked interrupted. Files that the plan names are not
-/// read again.
+/// Measures with the devices of the plan, simulates the twin of the camera, and compares camera and twin. Returns an
+/// error if nothing could be measured. If the reason is that a device cannot be opened, there is no session folder.
+/// After any other error the session folder exists and is marked interrupted. The files that the plan names are not
+/// read again, because `loaded` contains them.
 [[nodiscard]] Result<ExperimentOutcome> measure_plan(const LoadedPlan& loaded, const ExperimentOptions& options,
                                                      const ExperimentListener& listener, std::stop_token stop);
-/// Loads the plan first (LoadedPlan::load()).
+/// Loads the plan (LoadedPlan::load()) and measures with the overload above.
 [[nodiscard]] Result<ExperimentOutcome> measure_plan(const Plan& plan, const ExperimentOptions& options,
                                                      const ExperimentListener& listener, std::stop_token stop);
 
@@ -89,7 +92,7 @@ struct ExperimentOutcome {
 /// Measures as measure_plan(), but with the simulated sensor in place of the camera, and adds its direct estimate.
 [[nodiscard]] Result<ExperimentOutcome> simulate_plan(const LoadedPlan& loaded, const ExperimentOptions& options,
                                                       const ExperimentListener& listener, std::stop_token stop);
-/// Loads the plan first (LoadedPlan::load()).
+/// Loads the plan (LoadedPlan::load()) and simulates with the overload above.
 [[nodiscard]] Result<ExperimentOutcome> simulate_plan(const Plan& plan, const ExperimentOptions& options,
                                                       const ExperimentListener& listener, std::stop_token stop);
 

@@ -27,7 +27,7 @@ void shuffle(std::vector<T>& items, const RandomStream& stream) {
 }
 
 /// Returns the indices of a random choice of `per_size` trials (or all if there are fewer) for each contrast and size,
-/// by contrast and size.
+/// ordered by contrast and size.
 [[nodiscard]] std::vector<std::size_t> balanced_choice(const std::vector<JudgedTrial>& trials, int per_size,
                                                        const RandomStream& stream);
 

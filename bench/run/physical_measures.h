@@ -13,26 +13,26 @@
 
 namespace todbench {
 
-/// Measures with the bench after the trials. `options` are the options of the trials; the plates come from `inputs`. If
-/// a measure is not possible, the result contains the reason, and a note of the session states it. Empty: the plan
-/// requests no measures. Errors: `interrupted`.
+/// Takes the physical measures on the bench after the trials. `options` are the options of the trials; the plates come
+/// from `inputs`. If a measure is not possible, the result contains the reason, and a note of the session states it.
+/// Empty: the plan requests no measures. Errors: `interrupted`.
 [[nodiscard]] Result<std::optional<CameraMeasures>> physical_measures(const Plan& plan,
                                                                       const MeasurementOptions& options,
                                                                       const ExperimentInputs& inputs,
                                                                       OpenedBench& bench, const OpenSession& open,
                                                                       std::stop_token stop);
 
-/// Returns the measures of the sensor of the plan as described, with all effects, including those that the planner
-/// skips in the trials. Adds the closed forms of its MTF and CTF.
+/// Returns the measures of the sensor of the plan. All effects of its description are simulated, including those that
+/// the planner skips in the trials. Adds the closed forms of its MTF and CTF.
 [[nodiscard]] Result<std::optional<CameraMeasures>> simulated_measures(const LoadedPlan& loaded,
                                                                        const ExperimentInputs& inputs,
                                                                        const OpenSession& open, std::stop_token stop);
 
-/// Call of simulated_measures() on its own thread. The measures depend on the plan alone, and the processor is partly
-/// idle while the camera measures. With a program in place of the sensor, the call begins at take().
+/// Calls simulated_measures() on its own thread, because the measures depend only on the plan and the processor is
+/// partly idle while the camera measures. If a program replaces the sensor, the call begins in take().
 class BackgroundMeasures {
  public:
-  /// Starts the thread, unless the sensor is a program. `loaded` and `inputs` outlive this object.
+  /// Starts the thread, unless the sensor is a program. `loaded` and `inputs` must outlive this object.
   BackgroundMeasures(const LoadedPlan& loaded, const ExperimentInputs& inputs);
   /// Waits for the measures and emits their notes.
   [[nodiscard]] Result<std::optional<CameraMeasures>> take(const OpenSession& open, std::stop_token stop);

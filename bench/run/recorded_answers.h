@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recorded inputs of a measurement other than its frames. Each answer is stored with its question.
+// Recorded inputs of a measurement other than its frames. A question is a request of the measurement to its host or its
+// target. Each answer is stored with its question.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +28,7 @@ inline constexpr std::string_view answers_format = "2";
 [[nodiscard]] Reading calls_answer(std::int64_t calls);
 /// Returns the record of the outcome of a recovery.
 [[nodiscard]] Reading recovery_answer(const Result<void>& back);
-/// Returns the record of a request of the target for its state. A request is recorded only if it occurs.
+/// Returns the record that the target requested its state again (Target::asks_again() returned true).
 [[nodiscard]] Reading again_answer();
 /// Returns the record of a state that was requested from the target, and of its report.
 [[nodiscard]] Reading target_answer(const TargetState& set, const Result<PresentedTarget>& said);
@@ -47,7 +48,7 @@ class RecordedAnswers {
   /// Returns the recorded outcome of the recovery.
   [[nodiscard]] Result<void> recovery();
   /// Returns the recorded report of the target. Errors: `invalid_input` if the target was set differently, because the
-  /// frames then show another state.
+  /// frames then show a different state.
   [[nodiscard]] Result<PresentedTarget> target(const TargetState& set);
 
   /// Returns whether the target requested its state again at this point.

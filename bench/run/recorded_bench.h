@@ -32,9 +32,9 @@ struct RecordedBench {
 };
 
 /// Opens the bench of a session's recording. A measurement with the same questions in the same order receives the same
-/// answers, bit for bit; otherwise it fails with `invalid_input`. `pause` lets the replay pause and outlives the bench;
-/// with null the replay never pauses. Errors: `invalid_input` (no recording in the session, not one of a measurement,
-/// or another format of answers), `io`.
+/// answers, bit for bit; otherwise it fails with `invalid_input`. `pause`: controls pauses of the replay and must
+/// outlive the bench; null: the replay never pauses. Errors: `invalid_input` (no recording in the session, a recording
+/// that is not one of a measurement, or a different format of answers), `io`.
 [[nodiscard]] Result<RecordedBench> open_recorded_bench(const std::filesystem::path& session, const Pause* pause);
 
 }  // namespace todbench

@@ -26,7 +26,7 @@ struct ReplayOutcome {
 /// Permission to start the programs that a session names.
 enum class RunModules { no, yes };
 
-/// Returns the observer of a plan for the record, without a package.
+/// Returns the observer of a plan for OriginRecord, without a package.
 [[nodiscard]] JudgedBy judged_by(const LoadedPlan& loaded);
 
 /// A recorded session that is ready to be measured again.

@@ -21,7 +21,7 @@ namespace todbench {
 /// plate is located again, the presentation is repeated, and the gap is an interruption of the run (a new segment).
 /// Camera, settings and temperature scale must match the recording. If the camera cannot be opened, the function waits
 /// for it as after a loss, at most `reconnect_s` of the plan. The new session records the frames of both parts, so that
-/// it can be resumed or replayed in turn. Errors: those of measure_plan(); `invalid_input` for another camera.
+/// it can itself be resumed or replayed. Errors: those of measure_plan(); `invalid_input` for a different camera.
 [[nodiscard]] Result<ExperimentOutcome> resume_session(RecordedRun run, ExperimentOptions options,
                                                        const ExperimentListener& listener, std::stop_token stop);
 

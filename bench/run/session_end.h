@@ -8,7 +8,7 @@
 
 namespace todbench {
 
-/// The folder of a run and its listener. Borrows both.
+/// References to the folder of a run and to its listener, which must outlive this object.
 struct OpenSession {
   SessionFolder& folder;
   const ExperimentListener& listener;

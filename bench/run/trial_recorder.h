@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measurement into a session: trials and presentations are on the disk as soon as they are made.
+// Writes the trials and presentations of a measurement into its session as soon as they are made.
 #pragma once
 
 #include <stop_token>

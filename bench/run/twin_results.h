@@ -12,7 +12,7 @@
 
 namespace todbench {
 
-/// Work started in parallel to the camera.
+/// Work that runs in parallel to the measurement with the camera.
 struct BackgroundWork {
   BackgroundTask<Pairs>* pairs;  ///< null: no pairs are computed
   BackgroundMeasures& measures;

@@ -61,7 +61,8 @@ class ControlApi {
   /// Returns the response to a request.
   [[nodiscard]] ControlAnswer answer(const ControlRequest& request);
 
-  /// Path of the description with the names of its parameters, and its method. Used by the test of the description.
+  /// Method and path of a request, as in the OpenAPI description with the names of its parameters. Used by the test of
+  /// the description.
   struct Route {
     std::string_view method, path;
   };

@@ -64,7 +64,7 @@ class RunQueue {
   /// Returns the states of all runs, oldest first.
   [[nodiscard]] Json list() const;
   /// Answers the request to the operator. `number` selects the request; empty selects the current request. Errors:
-  /// `not_found` (no such run), `invalid_input` (no request, or a request with another number).
+  /// `not_found` (no such run), `invalid_input` (no request, or a request with a different number).
   [[nodiscard]] Result<void> answer(const std::string& id, std::optional<std::uint64_t> number, OperatorAnswer answer);
   /// Stops a run or removes it from the queue. Has no effect on a run that is over. Errors: `not_found` (no such run).
   [[nodiscard]] Result<void> stop(const std::string& id);

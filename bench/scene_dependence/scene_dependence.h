@@ -70,9 +70,9 @@ struct SceneDependenceOptions {
 using MoveBar = std::function<Result<void>(bool in, std::stop_token stop)>;
 
 /// Measures the dependence. The response of a size is the regression slope of the windows around its triangles on the
-/// same windows of a reference picture. The reference is the picture in which the plate was located, and is common to
-/// the bar outside and inside. Errors: those of measure() until the first frame, `calibration` if the plate has moved,
-/// `invalid_input` for options out of range.
+/// same windows of a reference picture. The reference is the picture in which the plate was located. The same reference
+/// is used with the bar outside and inside. Errors: those of measure() until the first frame, `calibration` if the
+/// plate has moved, `invalid_input` for options out of range.
 [[nodiscard]] Result<SceneDependence> measure_scene_dependence(FrameSource& camera, Target& target,
                                                                const MoveBar& move_bar, const TargetState& state,
                                                                Observer& observer, const MeasurementOptions& measuring,
@@ -90,7 +90,7 @@ using MoveBar = std::function<Result<void>(bool in, std::stop_token stop)>;
 /// Measures the first plate of the plan in its first mounting at its largest contrast. With the camera of the plan, the
 /// operator moves the bar (`host`). With the simulated sensor, the bar has a contrast of `bar_k`, and the stages of a
 /// package follow (null: none). Errors: those of measure_scene_dependence(), those of open_bench(); `invalid_input` for
-/// a package behind a camera.
+/// a package applied to a real camera.
 [[nodiscard]] Result<SceneDependence> plan_scene_dependence(const LoadedPlan& loaded, const EnhancementPackage* package,
                                                             double bar_k, const SceneDependenceOptions& options,
                                                             const ExperimentHost& host, std::stop_token stop);

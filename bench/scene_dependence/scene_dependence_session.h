@@ -13,7 +13,7 @@ namespace todbench {
 
 /// Parameters of the test.
 struct SceneDependenceTask {
-  std::optional<EnhancementPackage> package{};  ///< package behind the simulated sensor; stored in the session
+  std::optional<EnhancementPackage> package{};  ///< package applied to the simulated sensor; stored in the session
   double bar_k = 40;                            ///< contrast of the simulated bar
   SceneDependenceOptions options{};
 };

@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// An instrument that answered, as in the description of a target.
+/// An instrument that is named in the description of a target.
 struct AnsweredInstrument {
   std::string role;    ///< "black body"
   std::string serial;  ///< empty: the instrument does not state one
@@ -21,8 +21,8 @@ struct AnsweredInstrument {
 /// Returns the instruments of a description "ROLE (VENDOR MODEL, serial S); ROLE (...)".
 [[nodiscard]] std::vector<AnsweredInstrument> answered_instruments(std::string_view target);
 
-/// Returns a sentence for each row that states the calibration of another instrument: the row states a serial number,
-/// and an instrument of its role answered with a serial number that no row states.
+/// Returns a sentence for each row that does not belong to the instrument on the bench: the row states a
+/// serial number, but the instrument of its role answered with a serial number that no row states.
 [[nodiscard]] std::vector<std::string> contradicted_instruments(std::span<const InstrumentPlan> rows,
                                                                 std::string_view target);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measured frontier of accuracy and time as JSON, as printed by `cost` and kept in a session.
+// Measured trade-off between accuracy and computing time (frontier) as JSON, as printed by `cost` and stored in a
+// session.
 #pragma once
 
 #include "acquisition/base/result.h"

@@ -31,8 +31,8 @@ template <typename Whole>
   return value;
 }
 
-/// Reads the fields of a row in order and keeps the first error. Borrows both arguments. `columns`: names of the
-/// columns.
+/// Reads the fields of a row in order and keeps the first error. Keeps references to both arguments. `columns`: names
+/// of the columns.
 class FieldReader {
  public:
   FieldReader(std::span<const std::string> fields, std::span<const std::string_view> columns)

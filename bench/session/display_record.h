@@ -50,7 +50,7 @@ struct AcuityLimits {
 /// Returns the value of the key "acuity_limits" in the JSON of commands.
 [[nodiscard]] Json acuity_limits_json(const std::vector<AcuityLimits>& limits);
 
-/// Threshold of an observer with an eye behind the simulated sensor, by the direct estimate.
+/// Threshold of an observer with an eye that views the pictures of the simulated sensor, by the direct estimate.
 struct DisplayedPoint {
   double delta_t_k = 0;
   double s75_mrad = 0;

@@ -18,7 +18,7 @@ namespace todbench {
 
 class JsonFields;
 
-/// Presentation of a patch; the picture that the person saw can be reproduced from it.
+/// Presentation of a patch. The picture that the person saw can be reproduced from these values.
 struct ShownPatch {
   /// Samples that the model observer judged.
   cv::Mat1f kelvin;
@@ -95,7 +95,7 @@ struct MeanOverPeople {
 /// Returns the file with the pictures of the N-th person, counted from 1, relative to the session.
 [[nodiscard]] std::string shown_file_of_person(std::size_t number);
 /// Returns the mean at every contrast of the people. Several sittings of a person (the same code) count as their
-/// geometric mean; people without a code count one by one.
+/// geometric mean; each sitting without a code counts as one person.
 [[nodiscard]] std::vector<PeopleMean> mean_over_people(const std::vector<PersonRecord>& people);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PNG files of measures.json, which names them. They are stored in the folder pictures/ of a session.
+// PNG files to which measures.json refers. They are stored in the folder pictures/ of a session.
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Table of the physical measures in measures.json: one row for each measure, in the file of the measure.
+// Table of the physical measures in measures.json: one row for each measure. Each row is defined in the source file of
+// its measure.
 #pragma once
 
 #include <array>
@@ -54,7 +55,7 @@ struct MeasureRow {
   return rows;
 }
 
-/// MeasureRow::fields of the measure in a member of MeasureLines.
+/// Implements MeasureRow::fields for a measure that is stored in one member of MeasureLines.
 template <auto Member, auto Describe>
 void measure_part(JsonFields& json, const std::string& key, MeasureLines& lines) {
   json.later(key, lines.*Member, Describe);

@@ -64,7 +64,7 @@ struct MeasureLines {
 /// Returns the lines of all measures that were taken, their complete results, and the reasons for missing measures.
 [[nodiscard]] MeasureLines measure_lines(const CameraMeasures& measures);
 
-/// Returns the quantities of the lines as input of judge().
+/// Returns the name, value and interval of each line. Use them as JudgementInput::measures.
 [[nodiscard]] std::vector<MeasuredQuantity> quantities_of(const MeasureLines& lines);
 
 /// Measures of a session: of the camera (or of the simulated sensor alone) and of the twin.
@@ -78,7 +78,8 @@ struct SessionMeasures {
 /// {...}, "latency": {...}, "mrtd": {...}, "gain_control": {...}, "maps": [...], "picture": {...}, "reasons": [...]},
 /// "twin": the same or null}.
 [[nodiscard]] Json measures_json(const std::optional<CameraMeasures>& main, const std::optional<CameraMeasures>& twin);
-/// Returns the same object as content of measures.json. Errors: `internal` with the key (a number that is not finite).
+/// Returns the object of measures_json() as the content of the file measures.json. Errors: `internal` with the key if a
+/// number is not finite.
 [[nodiscard]] Result<Json> measures_record(const std::optional<CameraMeasures>& main,
                                            const std::optional<CameraMeasures>& twin);
 /// Returns the record of one camera as "main", with quantities, maps and reasons only. Errors: as above.

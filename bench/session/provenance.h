@@ -108,12 +108,12 @@ struct Provenance {
   std::string ended_utc;    ///< start plus time by the monotonic clock; empty: still running
   double clock_jump_s = 0;  ///< forward jump of the host's clock during the run
   SessionState state = SessionState::running;
-  Side side = Side::measured;  ///< side of trials.csv
+  Side side = Side::measured;  ///< side of the comparison whose answers trials.csv contains
   std::map<std::string, std::uint64_t> seeds;
   std::optional<CameraRecord> camera;  ///< empty for a simulated curve
   std::string target;                  ///< instruments in words, with serial numbers
   std::vector<InstrumentPlan> instruments;
-  std::vector<ModuleRecord> modules{};  ///< modules behind camera or twin; the observer last
+  std::vector<ModuleRecord> modules{};  ///< modules after the camera or its twin; the observer last
   SensorPlan effects;                   ///< effects of the simulated curve
   std::optional<RunRecord> run;         ///< run that wrote trials.csv
   /// Forecast for comparison with the times of `run`. Empty: not measured, a simulated scene, recorded frames, or an

@@ -29,7 +29,8 @@ class TargetsWriter {
   AppendFile file_;
 };
 
-/// Reads a file of TargetsWriter, every number exactly. Errors: `invalid_input` "FILE:LINE: ..." for any other content.
+/// Reads a file that TargetsWriter wrote. Numbers are read back exactly. Errors: `invalid_input` "FILE:LINE: ..." for
+/// any other content.
 [[nodiscard]] Result<std::vector<Presentation>> read_targets(const std::filesystem::path& file);
 
 }  // namespace todbench

@@ -29,14 +29,14 @@ class TrialsWriter {
   AppendFile file_;
 };
 
-/// Reads a file of TrialsWriter, every number exactly. An unknown since_nuc_s is an empty field. Files of earlier
-/// versions lack the last columns. Missing columns are read as 0 saturated pixels, no probability_correct, one frame,
-/// and no position in the picture. Errors: `invalid_input` "FILE:LINE: ..." for any other content.
+/// Reads a file that TrialsWriter wrote. Numbers are read back exactly. An unknown since_nuc_s is an empty field. Files
+/// of earlier versions lack the last columns. Missing columns are read as 0 saturated pixels, no probability_correct,
+/// one frame, and no position in the picture. Errors: `invalid_input` "FILE:LINE: ..." for any other content.
 [[nodiscard]] Result<std::vector<Trial>> read_trials(const std::filesystem::path& file);
 
 /// Reads counts for one psychometric fit: columns size, correct, total and optionally cluster (whole number >= 0), in
 /// any order. A file with only a header is empty data, not an error. Errors: `invalid_input` "FILE:LINE: ..." (missing,
-/// repeated or unknown column, row of another length, negative or non-finite size, count negative or not whole, correct
+/// repeated or unknown column, row of a wrong length, negative or non-finite size, count negative or not whole, correct
 /// > total).
 [[nodiscard]] Result<std::vector<Level>> read_levels(const std::filesystem::path& file);
 /// Parses counts in the same format from text. `name`: name of the text in messages.

@@ -45,7 +45,7 @@ struct IdentificationStudyTask {
   SequenceObserver sequence = SequenceObserver::single_frame;
   /// Number of frames of a pass.
   int frames = 8;
-  /// Stages behind the camera, as in IdentificationTask.
+  /// Stages after the camera, as in IdentificationTask.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   /// Largest distance over which the stages spread a picture, as in IdentificationTask.
   std::optional<int> stage_reach_px{};

@@ -11,9 +11,9 @@ struct Grating {
   double sensitivity;  ///< 1 over luminance contrast
 };
 
-/// Static achromatic gratings at the fovea, from 0.1 to 3000 cd/m2: every third of the figures used in the fit, in the
-/// order of the collection. castleCSF data, MIT licence, (c) 2023 University of Cambridge, converted from cone contrast
-/// to luminance contrast.
+/// Static achromatic gratings at the fovea, from 0.1 to 3000 cd/m2: every third value of the data used in the fit, in
+/// the order of the collection. castleCSF data, MIT licence, (c) 2023 University of Cambridge, converted from cone
+/// contrast to luminance contrast.
 inline constexpr Grating gratings[] = {
     {"ColorFest 2002", 40, 1.2, 0.5, 71.81},  {"ColorFest 2002", 40, 2, 0.5, 128.4},
     {"ColorFest 2002", 40, 2.8, 0.5, 155.2},  {"Wuerger 2020", 0.2, 2, 0.25, 13.73},
@@ -38,8 +38,8 @@ inline constexpr Grating gratings[] = {
     {"Rovamo 1993", 50, 32, 0.06814, 3.892},  {"Virsu 1979", 10, 0.5, 2.5, 177.2},
 };
 
-/// Gratings of laboratories that were not used in the fit, from the same collection, at the lowest measured temporal
-/// frequency, below 1.1 Hz.
+/// Gratings from the same collection, measured by laboratories whose data were not used in the fit. Each value was
+/// measured at the lowest temporal frequency of its study, which is below 1.1 Hz.
 inline constexpr Grating other_laboratories[] = {
     {"Snowden 1995", 0.11, 0.1, 1.599, 12.34}, {"Snowden 1995", 0.11, 1, 1.599, 64.17},
     {"Snowden 1995", 2.89, 0.1, 1.599, 19.95}, {"Snowden 1995", 2.89, 1, 1.599, 156.9},
@@ -65,8 +65,8 @@ inline constexpr DiscOfLight discs[] = {
     {20, 0.25, 124.5},     {0.2, 1, 39.93},    {20, 1, 131.3},        {200, 1, 172.4},
 };
 
-/// ModelFest (Carney et al. 1999, Watson and Ahumada 2005): mean log10 sensitivity of 16 people at 30 cd/m2, 84 % of
-/// two-alternative forced choice.
+/// ModelFest (Carney et al. 1999, Watson and Ahumada 2005): log10 of the sensitivity at 30 cd/m2, averaged over 16
+/// people. At threshold, 84 % of the answers in a two-alternative forced choice are correct.
 struct ModelFestGabor {
   double frequency_per_degree, sigma_deg, log10_sensitivity;
 };

@@ -27,7 +27,7 @@ using PngEncoder = std::function<Result<std::string>(const cv::Mat1b& picture)>;
                                             const PngEncoder& png);
 
 /// Reads a filled answers.csv. Errors: `invalid_input` "FILE:LINE: ..." (a missing column, a missing or unknown answer,
-/// a repeated or missing picture, answers of another experiment).
+/// a repeated or missing picture, answers of a different experiment).
 [[nodiscard]] Result<std::vector<ExperimentAnswer>> read_people_answers(const std::filesystem::path& file,
                                                                         const PersonExperiment& experiment);
 
@@ -60,7 +60,8 @@ struct StatedM75 {
 };
 /// Writes the file. Errors: `io`.
 [[nodiscard]] Result<void> write_m75_file(const std::filesystem::path& file, const StatedM75& m75);
-/// Reads the file. Errors: `invalid_input` with the file (no such file, another schema, values outside 1e-6 to 1e6).
+/// Reads the file. Errors: `invalid_input` with the file (no such file, a different schema, values outside 1e-6 to
+/// 1e6).
 [[nodiscard]] Result<StatedM75> read_m75_file(const std::filesystem::path& file);
 
 }  // namespace todbench

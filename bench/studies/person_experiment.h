@@ -31,8 +31,8 @@ enum class PersonTask {
 struct PersonCondition {
   double range_m = 0, transmittance = 1;  ///< range and transmittance of the air, for `identify`
   double frequency_per_mrad = 0;          ///< frequency of the bars
-  double contrast_k = 0;                  ///< contrast of the bars, or the mean dT_RSS of the set behind the air
-  std::size_t place = 0;                  ///< index of range or frequency in the task
+  double contrast_k = 0;  ///< contrast of the bars, or the mean dT_RSS of the set, attenuated by the air
+  std::size_t place = 0;  ///< index of range or frequency in the task
 };
 
 /// One question. The task with its seed reproduces its picture.
@@ -71,7 +71,7 @@ class PersonExperiment {
   [[nodiscard]] const std::vector<PersonCondition>& conditions() const { return conditions_; }
   [[nodiscard]] const std::vector<PersonTrial>& trials() const { return trials_; }
   /// Returns the shown picture in kelvin above the background; for two intervals both pictures, separated by a strip of
-  /// background. Errors: those of stages behind the camera.
+  /// background. Errors: those of stages after the camera.
   [[nodiscard]] Result<cv::Mat1f> picture_k(const PersonTrial& trial) const;
   /// Returns the grey scale, which is the same for all trials of a condition, so that it does not depend on the answer.
   [[nodiscard]] GreyScale grey(const PersonTrial& trial) const { return grey_[trial.condition]; }

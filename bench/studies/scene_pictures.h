@@ -29,7 +29,7 @@ struct ScenePicturesTask {
   SceneView view{};      ///< range and position of the scene
   SceneMotion motion{};  ///< motion of the picture across the detectors: the target moves, or the camera turns
   Accuracy accuracy{};
-  /// Stages behind the camera. They receive as many frames of the same motion as their memory stores. Empty: none.
+  /// Stages after the camera. They receive as many frames of the same motion as their memory stores. Empty: none.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   EffectPlannerOptions effects{};  ///< options of the effect planner
   std::uint64_t seed = 1;
@@ -67,16 +67,16 @@ struct TurbulenceSeen {
 
 /// Pictures and numbers of all stages.
 struct ScenePictures {
-  /// Pictures at the sensor, behind the optics, on the detectors, sampled, with noise, on the display, behind the
-  /// stages (if any), and after the filter of the observer.
+  /// Pictures at the sensor, after the optics, on the detectors, sampled, with noise, on the display, after the stages
+  /// (if any), and after the filter of the observer.
   std::vector<SceneStage> stages;
-  cv::Mat1f frame;                         ///< whole frame of the camera as displayed, behind the stages
+  cv::Mat1f frame;                         ///< whole frame of the camera as displayed, after the stages
   std::optional<double> judged_gain;       ///< gain of the stages, by which their picture is divided
   double grey_low_k = 0, grey_high_k = 1;  ///< black and white of every picture, above the background
   double background_k = 300;               ///< camera reading of the background: scene, air and one conversion
   double transmittance = 1;
   std::optional<TargetSignature> signature;  ///< signature before the air
-  double apparent_dt_k = 0;                  ///< contrast behind the air, the input of the effect planner
+  double apparent_dt_k = 0;                  ///< contrast attenuated by the air, the input of the effect planner
   EffectPlan effects;
   std::vector<AirDecision> air;
   std::optional<TurbulenceSeen> turbulence;  ///< empty if there is no turbulence
@@ -85,7 +85,7 @@ struct ScenePictures {
 /// Renders the stages. Pictures 1 to 3 are finer than the detectors, 4 and 5 have one pixel per sample, and later
 /// pictures have eight pixels per sample and axis. The effects that are needed at the contrast of the target are
 /// simulated, or all effects if no size has a threshold at this contrast. Errors: `invalid_input` (a range beyond the
-/// table of the air), `not_identifiable` (no contrast behind the stages), those of scene_signal_k() and of the stages.
+/// table of the air), `not_identifiable` (no contrast after the stages), those of scene_signal_k() and of the stages.
 [[nodiscard]] Result<ScenePictures> scene_pictures(const ScenePicturesTask& task);
 
 /// Returns a picture of 8 bits, black at low and white at high, enlarged by an integer factor until the longer side has

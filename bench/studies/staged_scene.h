@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frame of a scene behind processing stages, in units of its contrast in front of them.
+// Frame of a scene after processing stages, in units of its contrast before them.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 namespace todbench {
 
-/// Frame behind the stages.
+/// Frame after the stages.
 struct StagedFrame {
   cv::Mat1f kelvin;  ///< signal above the mean of the frame without a scene, divided by the gain
   double gain = 1;   ///< gain of the contrast of a scene at rest, by least squares over `field`
@@ -22,7 +22,7 @@ struct StagedFrame {
 /// Passes the counts of successive frames through newly created stages and returns the last frame. `signals`: signals
 /// of the frames in kelvin above the background; the last signal belongs to the returned frame, whose noise has index
 /// 0. The gain is computed from the last frame with the scene at rest and without the scene, both with the same noise.
-/// Errors: those of the stages; `not_identifiable` (no contrast behind the stages).
+/// Errors: those of the stages; `not_identifiable` (no contrast after the stages).
 [[nodiscard]] Result<StagedFrame> behind_stages(const SensorModel& model,
                                                 const std::function<std::vector<std::unique_ptr<ChainStage>>()>& stages,
                                                 const std::vector<cv::Mat1f>& signals, double background_k,

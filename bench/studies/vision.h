@@ -14,7 +14,7 @@ namespace todbench {
 
 /// Options of the comparison.
 struct VisionOptions {
-  Accuracy accuracy;  ///< accuracy of the thresholds behind a simulated sensor
+  Accuracy accuracy;  ///< accuracy of the thresholds with a simulated sensor
   std::uint64_t seed = 1;
   std::filesystem::path figures{};  ///< further figures of people, see figures_of_people(); empty: none
   std::stop_token stop{};

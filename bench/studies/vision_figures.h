@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Figures of people from a file, and the corresponding figures of an observer that has an eye.
+// Measured data of human vision from a file, and the corresponding values of the eye model.
 #pragma once
 
 #include <filesystem>
@@ -11,8 +11,8 @@
 
 namespace todbench {
 
-/// Reads figures of people from a CSV file and computes the figure of the eye for each row. Returns one kind for each
-/// `dataset`, or a single kind if the file has no such column.
+/// Reads measured data of human vision from a CSV file and computes the value of the eye model for each row. Returns
+/// one kind for each `dataset`, or a single kind if the file has no such column.
 ///
 /// Columns of contrast sensitivities:
 /// - `luminance_cd_m2`, `sensitivity` (1 / luminance contrast), `frequency_cpd`

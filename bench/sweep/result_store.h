@@ -23,7 +23,7 @@ enum class TaskState {
   failed,   ///< "NAME.failed" contains the reason; a new run tries again
   running,  ///< "NAME.lock" of a live process, or of another host within the last hours
   stale,    ///< a lock whose process has ended
-  foreign,  ///< a result of the same index with another hash, from another sweep file
+  foreign,  ///< a result of the same index with a different hash, from a different sweep file
 };
 /// States of all tasks.
 struct SweepStatus {
@@ -44,7 +44,7 @@ struct TaskOutcome {
   std::optional<Error> error{};
 };
 /// Runs a task unless its result exists. A result is written to a temporary file and renamed, so repeated calls are
-/// safe. A failure is stored as a file. Errors: `invalid_input` (same index, another hash); `interrupted` (no file is
+/// safe. A failure is stored as a file. Errors: `invalid_input` (same index, different hash); `interrupted` (no file is
 /// written).
 [[nodiscard]] TaskOutcome run_and_store(const RunnableSweep& runnable, std::size_t index, std::stop_token stop);
 

@@ -27,8 +27,9 @@ struct ParameterEffect {
   std::vector<EffectLevel> ends{};
   /// Shares of the variance of the response that are explained by the parameter alone, and by the parameter with all
   /// its interactions. They are means over the repeats, with the interval of that mean. Full factorial: exact sums of
-  /// squares. Drawn sample: the correlation ratio over classes of equal count, corrected for chance (no total). Draws
-  /// with total = true: the estimators of Saltelli et al. 2010 and Jansen 1999, with intervals over the draws.
+  /// squares. Drawn sample: the correlation ratio over classes of equal count, corrected for chance; there is no total
+  /// index. Draws with total = true: the estimators of Saltelli et al. 2010 and Jansen 1999, with intervals over the
+  /// draws.
   std::optional<double> first_order{}, total{};
   Interval first_order_ci95{}, total_ci95{};
 };

@@ -54,9 +54,9 @@ struct SweepFile {
   std::vector<SweepRange> sample;
   std::size_t sample_count = 0;
   std::uint64_t sample_seed = 1;
-  /// For a Sobol sample. If true, every draw contains two independent points A and B and, for each parameter, the point
-  /// A with this parameter taken from B. Total indices (Saltelli et al. 2010) are then computed from sample_count
-  /// (ranges + 2) combinations.
+  /// Only for a Sobol sample. If true, every draw consists of two independent points A and B and, for each range, a
+  /// copy of A in which the parameter of this range has the value of B. With R ranges there are sample_count x (R + 2)
+  /// combinations. Total indices (Saltelli et al. 2010) are computed from them.
   bool sample_total = false;
   std::size_t repeats = 1;
   std::vector<Constraint> where;
@@ -64,8 +64,9 @@ struct SweepFile {
   std::filesystem::path results;  ///< folder of the results
 };
 
-/// Reads [base], [grid], [zip], [sample], [repeat], name, seed, paired, kind, where. Keys of [grid] keep the order of
-/// the file; { from, to, steps } is a list. Errors: `invalid_input` "FILE:LINE: ...".
+/// Reads [base], [grid], [zip], [sample], [repeat], name, seed, paired, kind, where. The keys of [grid] stay in the
+/// order of the file. A table { from, to, steps } stands for a list of equidistant values. Errors: `invalid_input`
+/// "FILE:LINE: ...".
 [[nodiscard]] Result<SweepFile> read_sweep(const std::filesystem::path& file);
 /// Parses the text of a sweep file. `file`: name of the text in messages.
 [[nodiscard]] Result<SweepFile> parse_sweep(std::string_view text, const std::filesystem::path& file);

@@ -22,8 +22,8 @@ struct SweepTable {
 };
 /// Treatment of tasks without a result.
 enum class MissingTasks { refused, left_out };
-/// Collects all results. Errors: `invalid_input` (results of another sweep; results of several versions of the program,
-/// of which the message names two; an unreadable result), `not_identifiable` (tasks are missing and
+/// Collects all results. Errors: `invalid_input` (results of a different sweep; results of several versions of the
+/// program, of which the message names two; an unreadable result), `not_identifiable` (tasks are missing and
 /// MissingTasks::refused).
 [[nodiscard]] Result<SweepTable> collected(const Sweep& sweep, MissingTasks missing);
 

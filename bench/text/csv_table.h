@@ -31,7 +31,8 @@ struct CsvTable {
 };
 
 /// Parses a whole file. Lines may end with CR LF, empty lines are skipped, blanks around unquoted fields are removed.
-/// Errors: `invalid_input` with the line (no header, another number of fields than in the header, misplaced quotes).
+/// Errors: `invalid_input` with the line (no header, a number of fields that differs from the header, misplaced
+/// quotes).
 [[nodiscard]] Result<CsvTable> parse_csv(std::string_view text, std::string_view name);
 
 }  // namespace todbench

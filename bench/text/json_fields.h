@@ -26,8 +26,9 @@
 namespace todbench {
 
 /// JSON object that a description writes or reads. A value is a number, whole number, flag, text, interval, or a list,
-/// map or optional of values; an empty optional is null. Further argument `how`: the list of the values that are
-/// written as words, or the description of a nested record. Keeps the first mistake. Lives during one description.
+/// map or optional of values; an empty optional is null. The optional argument `how` is the list of the values that are
+/// written as words, or the description of a nested record. Keeps the first mistake. Used for one call of a
+/// description.
 class JsonFields {
  public:
   /// Describes a key that every record has. Mistakes in reading: missing key, other type. Mistake in writing: a number
@@ -149,7 +150,8 @@ template <typename Record, typename Describe>
   return record;
 }
 
-/// Writes a record to a file. Errors: the error of the record, with the file in front of its message; `io`.
+/// Writes a record to a file. Errors: the error of the record, with the name of the file at the beginning of its
+/// message; `io`.
 [[nodiscard]] Result<void> write_json_file(const std::filesystem::path& file, const Result<Json>& record);
 
 namespace json_fields_detail {

@@ -17,8 +17,8 @@
 
 namespace todbench {
 
-/// Reader of one document. Keeps the first mistake; later values are empty. Copies share the mistake. Borrows the
-/// document, which must outlive the reader. One thread at a time.
+/// Reader of one document. Keeps the first mistake; later values are empty. Copies share the mistake. Keeps a reference
+/// to the document, which must outlive the reader. One thread at a time.
 class JsonReader {
  public:
   explicit JsonReader(const Json& json, std::string path = "")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Hint at another unit for a number that is out of range.
+// Hint at a different unit for a number that is out of range.
 #pragma once
 
 #include <string>

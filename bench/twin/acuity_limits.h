@@ -22,10 +22,10 @@ namespace todbench {
                                                               const std::vector<double>& delta_t_k,
                                                               std::stop_token stop);
 
-/// Returns the factors that limit the acuity of an observer with an eye behind the simulated sensor. If the observer of
-/// the plan has no eye but the plan sets `display_as_operator`, the observer is hvs-2 at the display of the plan, and
-/// its thresholds are added. Empty if neither applies, or if the plan has modules. Errors: `interrupted`, and those of
-/// the observer's file.
+/// Returns the factors that limit the acuity of an observer with an eye that views the pictures of the simulated
+/// sensor. If the observer of the plan has no eye but the plan sets `display_as_operator`, the observer is hvs-2 at the
+/// display of the plan, and its thresholds are added. Empty if neither applies, or if the plan has modules. Errors:
+/// `interrupted`, and those of the observer's file.
 [[nodiscard]] Result<std::optional<DisplayRecord>> at_display(const TodCurve& curve, const ExperimentInputs& inputs,
                                                               const Plan& plan, std::stop_token stop);
 

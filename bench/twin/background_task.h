@@ -9,12 +9,12 @@
 
 namespace todbench {
 
-/// Computation on its own thread. The destructor stops the computation and waits for its end, so that borrowed objects
-/// may be destroyed afterwards.
+/// Computation on its own thread. The destructor stops the computation and waits for its end, so that objects to which
+/// the computation refers may be destroyed afterwards.
 template <typename T>
 class BackgroundTask {
  public:
-  /// Starts `make`. Objects that `make` refers to outlive this object.
+  /// Starts `make`. Objects that `make` refers to must outlive this object.
   explicit BackgroundTask(std::function<T(std::stop_token)> make)
       : made_(std::async(std::launch::async, std::move(make), halt_.get_token())) {}
   ~BackgroundTask() { halt_.request_stop(); }

@@ -16,11 +16,11 @@ namespace todbench {
 [[nodiscard]] TodCurve known_functions(const std::map<double, ProportionTable>& tables, const TodCurve& curve);
 
 /// Computation of the functions with 4000 draws per size and contrast, on the processor time that is free while the
-/// camera waits for its target and frames. The fit only stretches a function, so the function at the set contrast also
-/// serves for a slightly different effective contrast.
+/// camera waits for its target and frames. The fit only stretches a function, so the function at the set contrast can
+/// also be used for a slightly different effective contrast.
 class BackgroundTwinFunctions {
  public:
-  /// Starts on its own thread; `plan` and `inputs` outlive it.
+  /// Starts on its own thread; `plan` and `inputs` must outlive this object.
   BackgroundTwinFunctions(const Plan& plan, const ExperimentInputs& inputs);
 
   /// Waits for the functions or a stop, and returns known_functions().

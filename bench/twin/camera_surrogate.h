@@ -17,8 +17,8 @@
 
 namespace todbench {
 
-/// Estimate of the camera from its set-ups at the highest contrast. One thread at a time; `loaded` and `inputs` outlive
-/// this object.
+/// Estimate of the camera from its set-ups at the highest contrast. One thread at a time; `loaded` and `inputs` must
+/// outlive this object.
 class CameraSurrogate {
  public:
   /// `responses`: result of simulated_responses() for the twin.

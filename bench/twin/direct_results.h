@@ -33,9 +33,10 @@ struct DirectResults {
 /// Writes estimates and spreads into the points of the curve.
 void keep_direct(const DirectResults& direct, double pitch_mrad, TodCurve& curve);
 
-/// Replaces the thresholds of the planner's first tier by direct estimates, because those thresholds are up to 6 % too
-/// low if noise limits the acuity. The estimates have a standard error of 0.4 %, or the usual number of draws if 0.4 %
-/// needs too many draws. A contrast without an estimate keeps its threshold. Errors: `interrupted`.
+/// Replaces the thresholds of the planner's analytic estimate (CuedEstimate) by direct estimates, because those
+/// thresholds are up to 6 % too low if noise limits the acuity. The estimates have a standard error of 0.4 %, or the
+/// usual number of draws if 0.4 % needs too many draws. A contrast without an estimate keeps its threshold. Errors:
+/// `interrupted`.
 [[nodiscard]] Result<void> refine_thresholds(ExperimentInputs& inputs, std::uint64_t seed, std::stop_token stop);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Modules of a plan and of its sensor in a run: behind the camera, in place of the observer, in the record.
+// Modules of a plan and of its sensor in a run: after the camera, in place of the observer, in the record.
 #pragma once
 
 #include <functional>
@@ -39,7 +39,7 @@ using ModuleLine = std::function<void(std::string_view line)>;
 /// bench is unchanged.
 void put_stages_behind(OpenedBench& bench, std::vector<std::unique_ptr<ChainStage>> stages);
 
-/// Stores the noise of the run in counts and its correlation in every point. With stages behind the camera, the stored
+/// Stores the noise of the run in counts and its correlation in every point. With stages after the camera, the stored
 /// value is the lower of two: the noise of the camera's pictures and the noise of the judged pictures at this contrast.
 void keep_noise(const MeasurementResult& result, TodCurve& curve);
 

@@ -21,7 +21,7 @@ namespace todbench {
                                                        std::stop_token stop);
 
 /// Returns the answers converted to their set contrasts: contrast c in place of c', size S exp(g(c) - g(c')), g the ln
-/// S75 of the surface. The set contrast is the contrast that the camera observes behind the stated air.
+/// S75 of the surface. The set contrast is the contrast that the camera observes through the stated air.
 [[nodiscard]] std::vector<Trial> at_set_contrasts(std::span<const Trial> trials, const ContrastSurface& surface,
                                                   double air_transmittance);
 

@@ -61,7 +61,7 @@ struct Pairs {
 };
 /// Computes the pairs on its own thread while the physical measures of the camera and the trials of the twin are made;
 /// null if the plan requests none. `camera_of` is called on that thread and may wait for its curve. The plan, the
-/// inputs and the objects that `camera_of` refers to outlive the task.
+/// inputs and the objects that `camera_of` refers to must outlive the task.
 [[nodiscard]] std::unique_ptr<BackgroundTask<Pairs>> pairs_in_background(
     std::function<PairedCamera(std::stop_token)> camera_of, const Plan& plan, const ExperimentInputs& inputs);
 

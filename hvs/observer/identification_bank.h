@@ -102,7 +102,7 @@ class IdentificationBank {
   struct Views;
   Result<void> add(const Views& views);
   int window_ = 0, places_ = 0;            ///< search positions per axis
-  std::vector<cv::Mat1f> aspects_;         ///< [place][in the aspect's own part of the basis]
+  std::vector<cv::Mat1f> aspects_;         ///< [search position][coefficient in the view's part of the basis]
   std::vector<std::size_t> first_aspect_;  ///< index of the first view of each alternative, then the number of views
   std::vector<float> basis_;  ///< orthonormal pictures of all views: [block][sample][in block], as in TemplateBank
   std::shared_ptr<const IdentificationBank> eye_;  ///< the same views on the lattice of the noise of the eye

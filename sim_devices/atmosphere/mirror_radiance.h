@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Temperature that a camera reports for a black body behind warm mirrors.
+// Temperature that a camera reports for a black body seen via warm mirrors.
 #pragma once
 
 #include "sim_devices/atmosphere/band_radiance.h"
 
 namespace todbench {
 
-/// Returns the temperature (K) that a camera reports for a black body of `source_k` behind mirrors of temperature
+/// Returns the temperature (K) that a camera reports for a black body of `source_k` seen via mirrors of temperature
 /// `mirrors_k`. It is the temperature of a black body with the band radiance transmission L(source) + (1 -
 /// transmission) L(mirrors). Precondition: temperatures above 0 K, transmission above 0 and at most 1.
 [[nodiscard]] inline double seen_behind_mirrors_k(const SpectralBand& band, double transmission, double mirrors_k,

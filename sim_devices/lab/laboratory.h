@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Emulated laboratory: a camera, a black body and a plate stage around one simulated sensor, each with its real
 // protocol. The camera observes the state of the instruments, also while they settle. Runs of the stage use the clock
-// of the camera, which advances by one frame per exposure. A busy host therefore slows the runs down without making
-// them wrong.
+// of the camera, which advances by one frame per exposure. A busy host therefore slows the runs down, but their results
+// stay correct.
 #pragma once
 
 #include <cstdint>

@@ -29,9 +29,9 @@ struct Monitor {
 /// View of the monitor by a camera aimed at its middle. One thread at a time.
 class MonitorView {
  public:
-  /// Creates the view. `model` outlives the object. `centre_px`: middle of the monitor, from the middle of the picture.
-  /// Errors: `invalid_input` (a pixel of the monitor is larger than a sample of the camera, or a number is not above
-  /// 0).
+  /// Creates the view. `model` must outlive the object. `centre_px`: middle of the monitor, from the middle of the
+  /// picture. Errors: `invalid_input` (a pixel of the monitor is larger than a sample of the camera, or a number is not
+  /// above 0).
   [[nodiscard]] static Result<MonitorView> make(Monitor monitor, const SensorModel& model, Accuracy accuracy,
                                                 double distance_m, cv::Point2d centre_px);
 
@@ -49,7 +49,7 @@ class MonitorView {
   std::unique_ptr<SceneImager> imager_;
   double pixel_samples_;
   cv::Point2d middle_;
-  std::shared_ptr<const cv::Mat1f> seen_;  ///< the levels of signal_
+  std::shared_ptr<const cv::Mat1f> seen_;  ///< levels from which signal_ was computed
   cv::Mat1f signal_;                       ///< light minus the light around the picture, as a fraction of white
   double surround_ = 0;                    ///< light round the picture
 };

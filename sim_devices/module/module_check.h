@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Properties of a module that fulfils the contract. None of these properties is a fault.
+/// Properties of a module that fulfils the contract. No value of these properties violates the contract.
 struct ModuleReport {
   std::vector<cv::Size> shapes;  ///< sizes of the pictures that it processed
   bool network_cut = false;      ///< the module could not reach any other computer

@@ -16,12 +16,12 @@ struct JudgedSize {
   int asked = 0, right = 0;  ///< decisions, and correct decisions
 };
 
-/// Properties of an observer program that fulfils the contract. None of these properties is a fault.
+/// Properties of an observer program that fulfils the contract. No value of these properties violates the contract.
 struct ObserverModuleReport {
   std::vector<JudgedSize> sizes;
   bool network_cut = false;  ///< the program could not reach any other computer
   double latency_ms = 0;     ///< median of twenty patches of a target of 5 samples
-  /// Another process that received the patches in the opposite order returned other scores.
+  /// Another process that received the patches in the opposite order returned different scores.
   bool order_matters = false;
 };
 

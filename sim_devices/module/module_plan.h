@@ -18,7 +18,7 @@ namespace todbench {
 
 /// Place of a module in the chain.
 enum class ModulePlace {
-  picture,   ///< picture to picture, behind the sensor
+  picture,   ///< picture to picture, after the sensor
   observer,  ///< patch to scores, in place of the templates of the observer
   sensor,    ///< scene to frame: the sensor itself, in a sensor file only
 };

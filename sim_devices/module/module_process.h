@@ -20,7 +20,7 @@ namespace todbench {
 
 /// Access of a module to other computers, and to this computer over its network.
 enum class ModuleNetwork {
-  cut,  ///< own network and queues, no other sockets (bubblewrap); as `ours` if bubblewrap cannot run
+  cut,  ///< own network and message queues, no other sockets (bubblewrap); same as `ours` if bubblewrap cannot run
   ours,
 };
 /// Returns whether a network can be cut here: bubblewrap is installed and works. Tested once.
@@ -55,7 +55,7 @@ class ModuleProcess {
   ~ModuleProcess();
 
   /// Sends a picture and returns the output of the module. Errors: `disconnected` (the module ended), `timeout` (no
-  /// output in time), `integrity` (no array, another shape, an unknown type, a number that is not finite, bytes after
+  /// output in time), `integrity` (no array, a wrong shape, an unknown type, a number that is not finite, bytes after
   /// the output).
   [[nodiscard]] Result<cv::Mat1f> exchange(const cv::Mat1f& picture);
   /// Sends messages and returns the numbers of an array of this shape, last index fastest. Errors as exchange().

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stages of the chain behind the sensor, from picture to picture: common enhancements, and programs of the user.
+// Stages of the chain after the sensor, from picture to picture: common enhancements, and programs of the user.
 #pragma once
 
 #include <array>

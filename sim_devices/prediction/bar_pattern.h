@@ -21,9 +21,9 @@ enum class BarPattern {
 /// which the horizontal axis resolves. Precondition: frequency > 0.
 [[nodiscard]] std::vector<StepEdge> bar_edges(BarPattern pattern, double frequency_per_pitch, BarAxis axis);
 
-/// Returns sums over all samples of the squared difference between four bars and the alternative, behind `transfer`
-/// (cycles per pitch), at contrast 1 and one sample per pitch. One sum for each of phases x phases lattices at (i +
-/// 1/2) / phases - 1/2. Exact except for the truncation of the band at `band_per_pitch`.
+/// Returns sums over all samples of the squared difference between four bars and the alternative, after the filter
+/// `transfer` (frequencies in cycles per pitch), at contrast 1 and one sample per pitch. One sum for each of phases x
+/// phases lattices at (i + 1/2) / phases - 1/2. Exact except for the truncation of the band at `band_per_pitch`.
 [[nodiscard]] std::vector<double> bar_energies(double frequency_per_pitch, BarPattern alternative,
                                                const TransferFunction& transfer, double band_per_pitch, int phases);
 

@@ -32,7 +32,7 @@ class CameraHaloFit {
   /// `samples_per_pitch`: value of the camera.
   CameraHaloFit(const SensorSpec& twin, int samples_per_pitch);
 
-  /// Adds a picture of this contrast. Pictures of another size are ignored.
+  /// Adds a picture of this contrast. Pictures of a different size are ignored.
   void add(const OpticsPicture& picture, double delta_t_k);
 
   /// Returns the halo. `f_number_ratio`: f-number of the camera divided by the twin's f-number (CameraOptics), for the
@@ -49,7 +49,7 @@ class CameraHaloFit {
     cv::Mat1f weight;
   };
   struct Estimate {
-    double share = 0, share_se = 0, gain = 0;  ///< gain: of chi-square
+    double share = 0, share_se = 0, gain = 0;  ///< gain: decrease of chi-square by this halo
   };
   [[nodiscard]] std::optional<Estimate> estimate(std::size_t width, double f_number_ratio) const;
 

@@ -54,8 +54,8 @@ struct CameraOptics {
 /// plus four standard deviations, from the scatter of that noise over blocks of the plate. Errors of the renderer count
 /// as noise: 1e-4 of the contrast, twice the residual of pictures without noise.
 ///
-/// Every picture is reduced to a parabola in the two common parameters. This takes a tenth of a second per picture. Not
-/// thread-safe.
+/// For every picture, chi-square is approximated by a parabola in the two common parameters. This takes a tenth of a
+/// second per picture. Not thread-safe.
 class CameraOpticsFit {
  public:
   /// `samples_per_pitch`: of the camera. `wavelengths`: as in Accuracy, 16 for a real camera. Precondition:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computing time against accuracy, measured on the computer that runs it.
+// Computing time against accuracy, measured on this computer.
 #pragma once
 
 #include <chrono>
@@ -30,7 +30,7 @@ struct ThresholdEstimate {
 struct CostPoint {
   std::string knob;     ///< "wavelengths", "phases", "wrap", "band", "draws", "trials", "tolerance", "planner"
   std::string setting;  ///< value of the knob: "4", "1.5e-05", "5 %", "normal"
-  bool paired = false;  ///< same random numbers as its reference: the error comes from the knob alone
+  bool paired = false;  ///< same random numbers as its reference: the error comes from the setting only
   std::optional<double> wall_s{};         ///< computing time; if not measured, this and the next two are empty
   std::optional<double> error_percent{};  ///< of the 75 % acuity against the reference; the largest over contrasts
   std::optional<double> standard_error_percent{};  ///< stated by the estimate; the largest over contrasts
@@ -48,7 +48,7 @@ struct CostPoint {
   }
 };
 
-/// Measured ways of computing, with their reference.
+/// Measured points, with the reference to which their errors relate.
 struct CostFrontier {
   std::vector<CostPoint> points;
   std::vector<ThresholdEstimate> reference;  ///< empty, like `points`, if no contrast has a threshold
@@ -90,17 +90,17 @@ struct CostTask {
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };
 
-/// Callbacks: the present phase, and the number of points done out of all.
+/// Callbacks: the present phase, and the numbers of completed and of all points.
 struct CostListener {
   std::function<void(std::string_view phase)> on_phase{};
   std::function<void(std::size_t done, std::size_t points)> on_progress{};
 };
 
-/// Estimates every threshold anew, template banks included, for the planner's choices and for each setting of each knob
-/// of Accuracy. Each knob varies alone; the other knobs stay at the reference level.
+/// Estimates every threshold for the planner's choices and for each value of each setting of Accuracy (knob). Only one
+/// setting is varied at a time; the others keep the reference value.
 ///
 /// The error of wavelengths, phases, wrap and band is relative to the reference level with the same number of draws and
-/// the same random numbers, so it comes from the knob alone. The error of draws, trials, tolerance and planner is
+/// the same random numbers, so it comes from the setting only. The error of draws, trials, tolerance and planner is
 /// relative to the whole reference. It contains the variation of their random numbers, so their standard error is
 /// stated, too. Computing times are the shorter of two runs if there is time.
 ///

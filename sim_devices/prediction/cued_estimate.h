@@ -13,7 +13,7 @@
 
 namespace todbench {
 
-/// S75 as a function of the noise-to-contrast ratio of one sensor and observer. Uses the sizes and the template banks
+/// S75 as a function of the noise-to-contrast ratio q of one sensor and observer. Uses the sizes and the template banks
 /// of direct_estimate(). One thread at a time.
 ///
 /// Validity (section "Two tiers" of docs/method/effect-planning.md): within 4 % of the searching observer for q up to
@@ -29,7 +29,7 @@ class CuedEstimate {
   /// Returns the 75 % size in pitches. `q` is the noise per sample over the contrast, internal noise included. Errors:
   /// `invalid_input` if no size from 0.2 to 40 pitches reaches 75 % correct, or if even the smallest size exceeds 75 %.
   [[nodiscard]] Result<double> s75_pitch(double q);
-  /// Returns d ln S75 / d ln q at q. For an observer with an eye, q stands for all noise together.
+  /// Returns d ln S75 / d ln q at q. For an observer with an eye, q represents all noise together.
   [[nodiscard]] Result<double> sensitivity(double q);
   /// Returns the slope b of the Weibull function with the same slope as the proportion correct at the 75 % size:
   /// dP/dlnS = (b/4) ln 3.
@@ -51,8 +51,8 @@ class CuedEstimate {
   std::map<int, std::unique_ptr<SizeTrial>> trials_;
 };
 
-/// Returns the discriminability of the orientations behind a sensor, without noise: D^2 = integral of (|F_up -
-/// F_down|^2 + |F_up - F_right|^2) |H|^2 over the frequencies. F is the spectrum of a triangle of `size_pitch`.
+/// Returns the discriminability of the orientations in the picture of a sensor, without noise: D^2 = integral of (|F_up
+/// - F_down|^2 + |F_up - F_right|^2) |H|^2 over the frequencies. F is the spectrum of a triangle of `size_pitch`.
 [[nodiscard]] double discriminability(const SensorSpec& sensor, const SensorPlan& plan, double size_pitch,
                                       int wavelengths, SceneMotion motion = {});
 

@@ -65,9 +65,9 @@ struct ProportionCurve {
   std::vector<double> standard_error;      ///< standard error of each proportion
 };
 
-/// Returns the psychometric functions that direct_estimate() interpolates, one per contrast, from nearly chance to
-/// nearly certain within 0.2 to 40 pitches. Uses the draws of the accuracy and ignores a required standard error. Other
-/// errors as direct_estimate().
+/// Returns the psychometric functions that direct_estimate() interpolates, one per contrast. The sizes extend from
+/// nearly chance level to nearly 100 % correct answers, within 0.2 to 40 pitches. Uses the draws of the accuracy and
+/// ignores a required standard error. Other errors as direct_estimate().
 [[nodiscard]] Result<std::vector<ProportionCurve>> proportion_curves(const SensorSpec& spec, const SensorPlan& plan,
                                                                      TemplateObserver& observer,
                                                                      const std::vector<double>& delta_t_k,

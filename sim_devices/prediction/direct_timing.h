@@ -7,11 +7,13 @@
 
 namespace todbench {
 
-/// Returns the processor time that this thread has used, in seconds. Differences exclude the time of other programs.
+/// Returns the processor time that the calling thread has used so far, in seconds. The difference of two values does
+/// not include the time of other threads or programs.
 [[nodiscard]] double thread_seconds();
 
-/// Returns the processor time in seconds of direct_estimate() for one contrast with a 75 % size near `s75_pitch` and
-/// `noise_draws` final draws. Times one size trial with a few draws, which takes some tens of milliseconds, longer for
+/// Predicts the processor time of direct_estimate() for one contrast, in seconds. `s75_pitch`: expected 75 % size;
+/// `noise_draws`: number of draws of noise for each of the final sizes. The function evaluates one size with a few
+/// draws, measures the time, and scales it to the whole estimate. This takes some tens of milliseconds, longer for
 /// large sizes. Errors as TemplateObserver::bank().
 [[nodiscard]] Result<double> measured_direct_seconds(const SensorSpec& spec, const SensorPlan& plan,
                                                      const TemplateObserverSpec& observer, double delta_t_k,

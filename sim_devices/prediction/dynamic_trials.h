@@ -26,8 +26,8 @@ struct DynamicTrialOptions {
   int frames = 8;                     ///< frames of a pass, at least 1
   Accuracy accuracy;
   std::uint64_t seed = 1;
-  /// Stages behind the camera, made anew for every pass; empty: none. Before the first frame of a pass they receive as
-  /// many frames of the same motion as they store. Their lag is not removed. Contrast and noise are measured behind
+  /// Stages after the camera, created for every pass; empty: none. Before the first frame of a pass they receive as
+  /// many frames of the same motion as they store. Their lag is not removed. Contrast and noise are measured after
   /// them, with the plate at rest.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   std::stop_token stop{};

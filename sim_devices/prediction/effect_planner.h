@@ -39,7 +39,7 @@ struct ContrastOutlook {
   double weibull_slope = 0;      ///< slope of the psychometric function of that observer, at 75 %
 };
 
-/// Decisions of the planner, with the predictions behind them.
+/// Decisions of the planner, with the predictions on which they are based.
 struct EffectPlan {
   SensorPlan plan;                        ///< one decision per effect, in chain order
   double skipped_change_percent = 0;      ///< bound for all effects together that the criteria skip
@@ -61,18 +61,19 @@ struct SceneSurvey {
 /// template banks, which the observer keeps.
 [[nodiscard]] SceneSurvey survey_scene(const SensorSpec& sensor, TemplateObserver& observer, const EffectScene& scene);
 
-/// Decides which effects are skipped, by the criteria of docs/method/effect-planning.md. The criteria bound the change
-/// by skipping an effect at every contrast; the largest bound counts. The effects with the smallest bounds are skipped
-/// as long as their sum is within four fifths of the tolerance; the rest is reserved for numerical errors. Detector
-/// footprint, microscan, super-resolution and motion by half a pitch or more per time constant have no criterion and
-/// are always simulated. All effects are simulated if a contrast of the scene has no threshold, or if counts are too
-/// coarse or too few. Takes microseconds. Errors: `invalid_input` (no contrast has a threshold).
+/// Decides which effects are skipped, by the criteria of docs/method/effect-planning.md. For each contrast, a criterion
+/// gives an upper bound of the change of S75 that results from skipping an effect. The largest of these bounds is used.
+/// The effects with the smallest bounds are skipped as long as their sum is within four fifths of the tolerance; the
+/// rest is reserved for numerical errors. Detector footprint, microscan, super-resolution and motion by half a pitch or
+/// more per time constant have no criterion and are always simulated. All effects are simulated if a contrast of the
+/// scene has no threshold, or if counts are too coarse or too few. Takes microseconds. Errors: `invalid_input` (no
+/// contrast has a threshold).
 [[nodiscard]] Result<EffectPlan> plan_effects(const SceneSurvey& survey, const EffectPlannerOptions& options);
 /// Runs survey_scene() and plan_effects() on its result.
 [[nodiscard]] Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& observer,
                                               const EffectScene& scene, const EffectPlannerOptions& options);
 
-/// Planner that caches its latest surveys, so that it plans at once if only tolerance, requests or trials differ.
+/// Planner that caches its latest surveys, so that it plans immediately if only tolerance, requests or trials differ.
 /// Thread-safe; a request that arrives during a survey waits for it.
 class EffectPlanner {
  public:

@@ -35,8 +35,8 @@ struct AxisCurves {
 /// and the modulation is above 1 %.
 [[nodiscard]] Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditions& conditions);
 /// Returns the contrast threshold of the system over cycles/mrad, up to Nyquist: eye / (display x sensor MTF) x sqrt(1
-/// + alpha^2 sigma^2 / S^2), as in the TTP model of 2004. sigma is the noise behind the eye's channel exp(-2.2 ln^2).
-/// Geometric mean of the axes.
+/// + alpha^2 sigma^2 / S^2), as in the TTP model of 2004. sigma is the noise after the eye's channel exp(-2.2 ln^2).
+/// The result is the geometric mean of both axes.
 [[nodiscard]] Result<LogLinearCurve> system_ctf(const SensorSpec& spec, const FormulaConditions& conditions);
 
 }  // namespace todbench

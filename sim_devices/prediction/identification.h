@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Identification experiment: an observer discriminates the targets of a set behind a simulated camera.
+// Identification experiment: an observer discriminates the targets of a set in the pictures of a simulated camera.
 #pragma once
 
 #include <array>
@@ -31,8 +31,8 @@ struct IdentificationRange {
 
 /// Pictures of the targets that the observer uses as templates.
 enum class TemplateKnowledge {
-  behind_camera,          ///< pictures behind this camera in this motion, as for people who learned from them
-  behind_camera_at_rest,  ///< pictures behind this camera without motion
+  behind_camera,          ///< pictures taken by this camera with this motion, as for people who learned from them
+  behind_camera_at_rest,  ///< pictures taken by this camera without motion
   ideal                   ///< ideal pictures without blur; a blurred target can then resemble another target
 };
 /// Differences between the targets.
@@ -61,14 +61,14 @@ struct IdentificationTask {
   /// Use of the frames of a pass, as for a moving triangle; internal noise is drawn once per decision.
   SequenceObserver sequence = SequenceObserver::single_frame;  ///< one of `identification_sequences`
   int frames = 8;                                              ///< frames of a pass; not used for a single frame
-  /// Stages behind the camera, made anew for every pass if they have a memory; empty: none. Before the first frame of a
+  /// Stages after the camera, created for every pass if they have a memory; empty: none. Before the first frame of a
   /// pass they receive as many frames of the same motion as they store. Their lag is not removed.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
-  /// Largest distance, in samples, over which a picture influences a sample behind the stages; empty: the whole picture
+  /// Largest distance, in samples, over which a picture influences a sample after the stages; empty: the whole picture
   /// has an influence.
   std::optional<int> stage_reach_px{};
   /// Cn2 of the turbulence along the path of each range, instead of the sensor's Cn2; 0: as in the sensor. The plan
-  /// must simulate turbulence. The templates of an observer with knowledge behind the camera include this air.
+  /// must simulate turbulence. The templates of an observer whose knowledge includes the camera include this air.
   double cn2_m_minus_2_3 = 0;
   std::uint64_t seed = 1;
   std::stop_token stop{};
@@ -77,7 +77,7 @@ struct IdentificationTask {
 /// Returns the sensor of the task at a range, as planned.
 [[nodiscard]] SensorSpec sensor_at(const IdentificationTask& task, double range_m);
 
-/// Contrast and noise of the pictures behind the stages, measured in pictures at rest.
+/// Contrast and noise of the pictures after the stages, measured in pictures at rest.
 struct JudgedPictures {
   double gain = 1;  ///< gain of the contrast of all views together; judged pictures are divided by it
   double least_gain = 1, largest_gain = 1;  ///< smallest and largest gain of a single view
@@ -92,7 +92,7 @@ struct IdentificationPoint {
   std::vector<double> by_draw;
   /// Proportion correct of an observer with an eye, for the worst and the best values of its open parameters.
   std::optional<std::pair<double, double>> spread{};
-  std::optional<JudgedPictures> judged{};  ///< contrast and noise behind the stages; empty without stages
+  std::optional<JudgedPictures> judged{};  ///< contrast and noise after the stages; empty without stages
   [[nodiscard]] double proportion() const;
   [[nodiscard]] double standard_error() const;
 };
@@ -109,10 +109,10 @@ struct IdentificationEffort {
 
 /// Returns one point per range, in the same order. Every target in every aspect is shown with each draw of sensor and
 /// internal noise, in one of 16 sampling phases that change from draw to draw. The template observer sets the internal
-/// noise and the enlargement of the sensor's noise. The contrast is dT_RSS behind the air; for an observer with an eye
-/// it is converted to the luminance contrast of its display. As in dynamic_trials(), a target in motion is judged at
-/// its true position, without the mean lag of time constant and exposure. Each row is judged at the time at which it is
-/// read.
+/// noise and the enlargement of the sensor's noise. The contrast is dT_RSS attenuated by the air; for an observer with
+/// an eye it is converted to the luminance contrast of its display. As in dynamic_trials(), a target in motion is
+/// judged at its true position, without the mean lag of time constant and exposure. Each row is judged at the time at
+/// which it is read.
 ///
 /// Stages receive rounded and clipped counts: of the window and its surround, or of the whole picture if a stage needs
 /// it. Internal noise is relative to the contrast of a view in the judged pictures, and the observer enlarges the noise
@@ -120,9 +120,9 @@ struct IdentificationEffort {
 /// in parallel on all processors, and the result does not depend on their number. Dead detectors are left out. Counts
 /// are rounded with the noise, not with the signal. Errors: `invalid_input` (fewer than two targets, targets that are
 /// equal from every side, a target without contrast, counts too coarse for the noise, targets too large for the
-/// observer, more than 5 pixels per frame, motion in front of microscan or super-resolution, several frames with image
+/// observer, more than 5 pixels per frame, motion with microscan or super-resolution, several frames with image
 /// dance, targets that do not fit into the picture of a stage, contrasts that reach the lowest or highest count),
-/// `not_identifiable` (no contrast behind the stages), `interrupted`, errors of the stages.
+/// `not_identifiable` (no contrast after the stages), `interrupted`, errors of the stages.
 [[nodiscard]] Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task);
 
 /// Pictures of identify() for another observer. Immutable, thread-safe.
@@ -134,14 +134,14 @@ class IdentificationFrames {
   /// as in identify() of the same task. All frames of a range have the same size. Errors: those of the stages.
   [[nodiscard]] Result<cv::Mat1f> frame_k(std::size_t range, std::size_t target, std::size_t aspect,
                                           std::uint64_t draw) const;
-  /// Returns the contrast dT_RSS behind the air.
+  /// Returns the contrast dT_RSS attenuated by the air.
   [[nodiscard]] double contrast_k(std::size_t range, std::size_t target, std::size_t aspect) const;
 
  private:
   struct Range;
   IdentificationFrames() = default;
   std::vector<std::shared_ptr<const Range>> ranges_;
-  std::vector<std::vector<double>> contrasts_k_;  ///< [target][aspect], in front of the air
+  std::vector<std::vector<double>> contrasts_k_;  ///< [target][aspect], before attenuation by the air
 };
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Passes of the targets of an identification experiment: successive frames round a moving target, behind the stages.
+// Passes of the targets of an identification experiment: successive frames round a moving target, after the stages.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct PassWindow {
   cv::Point2d phase;
 };
 
-/// Contrast and noise of a view behind the stages, divided by the gain. Both are relative to the values before the
+/// Contrast and noise of a view after the stages, divided by the gain. Both are relative to the values before the
 /// stages.
 struct ViewScale {
   double contrast = 1, noise = 1;
@@ -42,7 +42,7 @@ struct ViewScale {
 class IdentificationPasses {
  public:
   /// Prepares the passes. `spec` is the sensor of the range as planned; `shown` are the targets in displayed samples.
-  /// `window` outlives the object, as does the task. Errors: those of identify() about stages.
+  /// `window` and the task must outlive the object. Errors: those of identify() about stages.
   [[nodiscard]] static Result<std::unique_ptr<const IdentificationPasses>> of(
       const IdentificationTask& task, const SensorSpec& spec, const SeenWindow& window, double transmittance,
       std::vector<AlternativeAspects> shown, int side);
@@ -62,7 +62,7 @@ class IdentificationPasses {
 
   /// Returns the scale of a view.
   [[nodiscard]] ViewScale scale(std::size_t target, std::size_t aspect) const { return scales_[target][aspect]; }
-  /// Returns contrast and noise behind the stages; empty without stages.
+  /// Returns contrast and noise after the stages; empty without stages.
   [[nodiscard]] const std::optional<JudgedPictures>& judged() const { return judged_; }
 
  private:
@@ -70,8 +70,8 @@ class IdentificationPasses {
                        double transmittance, std::vector<AlternativeAspects> shown, int side);
   [[nodiscard]] Result<void> prepare_stages();
   [[nodiscard]] Result<void> measure_scales();
-  /// Gain of the stages for a view, from a least-squares fit over the window: picture behind the stages over picture in
-  /// front of them.
+  /// Gain of the stages for a view, from a least-squares fit over the window: picture after the stages over picture
+  /// before them.
   struct ViewGain {
     double product = 0, energy = 0;  ///< the gain is their ratio
     double variance = 0;             ///< variance of the product

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Repeated use of one draw of white noise: turned and mirrored pictures of noise are equally probable.
+// Repeated use of one draw of white noise: rotated and mirrored pictures of noise are equally probable.
 #pragma once
 
 #include <array>
@@ -11,9 +11,9 @@
 
 namespace todbench {
 
-/// Turns and mirrors noise after its projection. Turned noise has the same scores, exchanged between the templates. The
-/// four triangles at a square of positions allow eight turns; a bank without this symmetry allows only the unchanged
-/// noise. One thread at a time.
+/// Rotates and mirrors noise after its projection. Rotated noise has the same scores, exchanged between the templates.
+/// The four triangles at a square of positions allow eight turns; a bank without this symmetry allows only the
+/// unchanged noise. One thread at a time.
 class ScoreTurns {
  public:
   /// Tests the symmetry on templates of the bank.

@@ -15,7 +15,7 @@ namespace todbench {
 /// Renderer of the displayed picture of a target for one camera. Immutable, thread-safe.
 class SeenWindow {
  public:
-  /// Precondition: `spec` is as_planned(). `imager` outlives the object.
+  /// Precondition: `spec` is as_planned(). `imager` must outlive the object.
   SeenWindow(const SensorSpec& spec, const SceneImager& imager);
   /// Returns the picture of edges in samples round the origin, which lies `offset` from the middle of the window. Steps
   /// are multiplied by `factor`. With image dance, the target is displaced as in presentation `number`.

@@ -61,7 +61,7 @@ struct WhiteNoise {
 
 /// Responses to the signal for every sampling phase, and projected noise. Each is computed once and shared by the
 /// contrasts. Every kind of noise has its own random numbers, so leaving out one kind does not change the numbers of
-/// another kind. White noise that is turned, mirrored or negated is equally probable and has the scores of exchanged
+/// another kind. White noise that is rotated, mirrored or negated is equally probable and has the scores of exchanged
 /// templates. Each draw is therefore used in all sixteen ways, each in a sixteenth of the phases. One thread at a time.
 class SizeTrial {
  public:
@@ -72,8 +72,8 @@ class SizeTrial {
   [[nodiscard]] Proportion proportion(const WhiteNoise& white, double contrast_k, int draws);
 
   /// Returns the proportion correct with the counts of the sensor: every pixel of every trial is rounded and clipped.
-  /// Each draw is used in a number of sampling phases equal to the phases of one axis; successive draws use all phases
-  /// in turn. The number of phases is twice the number without rounding. Precondition: conditions.by_pixels.
+  /// Each draw is used in as many sampling phases as one axis has; successive draws cycle through all phases. There are
+  /// twice as many phases as without rounding. Precondition: conditions.by_pixels.
   [[nodiscard]] Proportion pixel_proportion(const PixelContrast& contrast, int draws);
 
   /// Returns the proportion correct of an observer that knows the position (to half a search step) in white noise of sd
@@ -135,7 +135,7 @@ class SizeTrial {
   int places_of_dance_ = 1;          ///< displacements by image dance for each phase
   std::vector<Response> responses_;  ///< responses by shown orientation, position of the dance and phase
   ScoreTurns turns_;
-  std::vector<std::vector<std::uint32_t>> phase_group_;  ///< responses by group; its phases lie evenly in the pixel
+  std::vector<std::vector<std::uint32_t>> phase_group_;  ///< response indices by group; phases evenly spread
   std::vector<std::uint32_t> every_response_;
   std::vector<float> turned_;                          ///< scratch
   std::vector<std::vector<float>> noise_;              ///< projected white noise of sd 1, by draw

@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Largest loss of acuity by the size of the picture at the eye, in percent.
+/// Largest accepted loss of acuity due to the size of the picture at the eye, in percent.
 inline constexpr double viewing_cost_percent = 1;
 
 /// Proposed zoom and distance.
@@ -23,11 +23,11 @@ struct ViewingProposal {
   double viewing_distance_m = 0;   ///< largest at the stated zoom
 };
 
-/// Compares S75 at angles of 1 to 8 arcmin per displayed sample with S75 of a large picture, the mean at 6 and 8
-/// arcmin. All are direct estimates at the contrast `delta_t_k`. Between angles ln S75 is interpolated linearly in the
-/// logarithm of the angle. The angle is changed by the distance, at constant luminance. A small eye movement,
-/// accommodation and the field of view are not modelled. Precondition: an eye with a display. Errors: those of
-/// direct_estimate().
+/// Compares S75 at angles of 1 to 8 arcmin per displayed sample with S75 of a large picture, which is the mean at 6 and
+/// 8 arcmin. All values are direct estimates at the contrast `delta_t_k`. Between angles, ln S75 is interpolated
+/// linearly in the logarithm of the angle. Different angles correspond to different viewing distances at constant
+/// luminance. Small eye movements, accommodation and the field of view are not modelled. Precondition: an eye with a
+/// display. Errors: those of direct_estimate().
 [[nodiscard]] Result<ViewingProposal> propose_viewing(const SensorSpec& sensor, const SensorPlan& effects,
                                                       const TemplateObserverSpec& observer, double delta_t_k,
                                                       std::stop_token stop);

@@ -24,7 +24,7 @@ namespace todbench {
 enum class BarCriterion {
   four_or_five,  ///< two intervals with four and five bars: which had four? 75 %, free of bias
   /// Yes or no: every gap is lower than both its bars; 75 % yes, 5 % yes without bars. An observer with an eye judges
-  /// the picture behind display and eye (SeenPicture), any other observer the camera's picture.
+  /// the picture after display and eye (SeenPicture), any other observer the camera's picture.
   bars_resolved,
   detection  ///< two intervals, one with four bars: which one? 75 %; not an MRTD
 };

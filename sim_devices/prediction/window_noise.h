@@ -22,7 +22,7 @@ class WindowNoise {
   WindowNoise(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy, int window_samples,
               std::uint64_t seed)
       : WindowNoise(spec, plan, accuracy, cv::Size(window_samples, window_samples), seed) {}
-  /// Returns the noise of the camera behind its display, in kelvin.
+  /// Returns the noise of the camera after its display, in kelvin.
   [[nodiscard]] cv::Mat1f sensor_k(std::uint64_t draw) const { return sensor_frames_k(draw, 1).front(); }
   /// Returns the noise of `count` successive frames, which share the fixed pattern of the draw; the first equals
   /// sensor_k().

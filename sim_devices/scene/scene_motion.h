@@ -4,15 +4,17 @@
 
 namespace todbench {
 
-/// Angular velocity of the target in the picture, x right, y down. The target is tracked: in the picture it is smeared,
-/// but at its true position.
+/// Angular velocity of the target in the picture, x to the right, y downwards. The motion smears the picture of the
+/// target, but the smeared picture is centred on the true position of the target, as for an observer that tracks the
+/// target.
 struct SceneMotion {
   double x_mrad_s = 0, y_mrad_s = 0;
   bool operator==(const SceneMotion&) const = default;
   [[nodiscard]] bool moving() const { return x_mrad_s != 0 || y_mrad_s != 0; }
 };
 
-/// Example of a motion, for the planning of effects for a scene that may start to move.
+/// An arbitrary motion. Pass it to full_plan() if the target may start to move, so that the effects of motion are
+/// simulated.
 inline constexpr SceneMotion any_motion{.x_mrad_s = 1, .y_mrad_s = 0};
 
 }  // namespace todbench

@@ -20,7 +20,7 @@ namespace todbench {
 /// Returns whether the display differs from sample-and-hold, or the camera boosts edges.
 [[nodiscard]] bool has_display(const SensorSpec& spec);
 
-/// Returns the standard deviation, behind the display, of white noise that has standard deviation 1 in front of it.
+/// Returns the standard deviation, after the display, of white noise that has standard deviation 1 before it.
 [[nodiscard]] double display_noise_gain(const SensorSpec& spec);
 
 /// Filters rows and columns with the taps. The picture is mirrored at its edges, so pixels closer to an edge than half

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image dance of short exposures behind turbulent air: the difference between one exposure and the mean of many.
+// Image dance of short exposures through turbulent air: the difference between one exposure and the mean of many.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace todbench {
 
 /// Returns the share of the variance of the dance that remains between pictures, 0 to 1. Angles of arrival have the
 /// correlation exp(-t / tau_c), with tau_c = `turbulence_correlation_ms`, and are averaged over exposure and time
-/// constant. The rest of the variance is blur within the picture. Returns 0 for the long exposure.
+/// constant. The rest of the variance is blur within the picture. Returns 0 if the sensor uses the long-exposure model.
 [[nodiscard]] double dance_share(const SensorSpec& spec);
 /// Returns the weight of the tilt that is removed from the long exposure: 1 in the near field (D >= sqrt(lambda L)),
 /// otherwise 1/2 (Fried 1966).

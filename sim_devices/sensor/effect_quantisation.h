@@ -12,8 +12,9 @@ namespace todbench {
 
 /// Returns the temporal noise of a displayed sample in counts, before rounding.
 [[nodiscard]] double noise_in_counts(const SensorSpec& spec);
-/// Returns whether a count is larger than one standard deviation of the noise. If not, rounding errors are noise of
-/// variance 1/12, to 3e-9 of a count; otherwise they depend on the signal.
+/// Returns whether a count is larger than one standard deviation of the noise. If it is not, rounding errors act as
+/// additional noise with a variance of 1/12 squared count, accurate to 3e-9 of a count. Otherwise rounding errors
+/// depend on the signal.
 [[nodiscard]] bool rounds_coarsely(const SensorSpec& spec);
 /// Returns whether the surround or a target of this contrast lies less than six standard deviations of the noise away
 /// from the lowest or highest count.

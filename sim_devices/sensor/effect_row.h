@@ -23,7 +23,7 @@
 
 namespace todbench {
 
-/// The sensor and a scene, for stages of image formation. Borrowed for the call.
+/// The sensor and a scene, for stages of image formation. References are valid only during the call.
 struct ChainScope {
   const SensorSpec& spec;
   const SensorPlan& plan;
@@ -114,7 +114,7 @@ struct NoiseScope {
   std::function<double(SharedBy)> variance_ratio;
 };
 
-/// One contrast of a scene, as the planner expects it: the input of a bound. Borrowed for the call.
+/// One contrast of a scene, as the planner expects it: the input of a bound. References are valid only during the call.
 struct ExpectedScene {
   const SensorSpec& spec;
   const SensorPlan& everything;  ///< every effect that is not neutral
@@ -135,7 +135,8 @@ struct ExpectedScene {
 
 /// Permission for the planner to skip an effect that has a bound.
 enum class WhenBounded { may_be_skipped, simulated };
-/// Dependence of the effect on direction: it changes a picture turned by a quarter in the same way, or differently.
+/// Whether the effect acts alike along both axes. alike: it changes a picture that is rotated by 90 degrees in the same
+/// way as the picture itself.
 enum class AxisDirections { alike, different };
 
 /// Row of the table. A member at its default means that the effect does not use it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image of a single shape behind optics and detector of one sensor, at one accuracy.
+// Image of a single shape after optics and detector of one sensor, at one accuracy.
 #pragma once
 
 #include <map>
@@ -30,7 +30,7 @@ class ImageChain {
   /// Returns the image of a shape of contrast 1 near the origin. With sequential readout, the row of the origin samples
   /// at the time of the picture, and the times of the other rows count from it.
   [[nodiscard]] PolygonImage image(const Polygon& shape_pitch) const;
-  /// Returns whether the image of the shape turned by a quarter equals `image` turned by a quarter.
+  /// Returns whether rotating the shape by 90 degrees only rotates its image by 90 degrees.
   [[nodiscard]] bool turns_alike(const PolygonImage& image) const {
     return readout_slope_ == cv::Point2d(0, 0) && spec_.pitch_aspect() == 1 && image.turns_alike();
   }
@@ -54,7 +54,9 @@ class ImageChain {
  private:
   [[nodiscard]] InfinitePlane extrapolated(const Polygon& shape_pitch, cv::Point2d first, double step,
                                            cv::Size size) const;
-  /// `shape` and `half_width` are in pitches along x; `first` and `step` are as for infinite_plane().
+  /// Adds the contribution of the parts of a shape outside the square |x|, |y| <= half_width: the integrated tail of
+  /// the diffraction spot. `shape` and `half_width` are in pitches along x; `first` and `step` are as for
+  /// infinite_plane().
   void add_far_field(InfinitePlane& near, const Polygon& shape, cv::Point2d first, double step,
                      double half_width) const;
   [[nodiscard]] std::shared_ptr<const FilterTable> filter(const FrequencyLattice& lattice) const;

@@ -16,7 +16,7 @@
 
 namespace todbench {
 
-/// Samples of a scene behind optics and detector of one sensor. Thread-safe. Tables are computed once per sensor and
+/// Samples of a scene after optics and detector of one sensor. Thread-safe. Tables are computed once per sensor and
 /// frame size.
 ///
 /// A scene is split into its exact means over the cells of the sampling grid and a remainder in the cells that an edge

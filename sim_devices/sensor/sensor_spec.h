@@ -50,7 +50,7 @@ struct SensorSpec {
   double fixed_pattern_k = 0;        ///< sd of the fixed offset per detector
   double time_constant_ms = 0;       ///< time constant of the bolometer; 0: none
   double exposure_ms = 0;            ///< exposure of a detector that integrates and holds; 0: instantaneous
-  double row_time_us = 0;            ///< time between successive rows of detectors; 0: all rows sample at once
+  double row_time_us = 0;            ///< time between successive rows of detectors; 0: all rows sample at the same time
   double field_delay_ms = 0;         ///< time from the even to the odd rows of an interlaced frame; 0: progressive
   double row_noise_k = 0;            ///< sd of an offset per detector row, new in every exposure
   double column_noise_k = 0;         ///< sd of an offset per detector column, new in every exposure
@@ -63,14 +63,14 @@ struct SensorSpec {
   int super_resolution_frames = 0;
   DisplayReconstruction display = DisplayReconstruction::sample_and_hold;
   double display_blur_samples = 0;  ///< Gaussian blur of the display per axis, in displayed samples
-  /// Strength b of the camera's edge filter per axis, on its samples behind all noise: taps -b, 1 + 2 b, -b; 0: none.
+  /// Strength b of the camera's edge filter per axis, on its samples after all noise: taps -b, 1 + 2 b, -b; 0: none.
   double edge_boost = 0;
   int microscan = 1;               ///< n: n x n displacements per picture, n^2 as many samples
   int bits = 14;                   ///< significant bits of a count
   double kelvin_per_count = 0.01;  ///< linear temperature output
   double offset_k = 250;           ///< temperature of count 0
   double frame_rate_hz = 50;
-  /// User's programs behind the sensor; each receives a picture and returns a picture. SensorModel and estimates do not
+  /// User's programs after the sensor; each receives a picture and returns a picture. SensorModel and estimates do not
   /// run them.
   std::vector<ModulePlan> modules{};
   double scene_temperature_k = 300;  ///< temperature of the surround; sets the spectral weighting dL/dT

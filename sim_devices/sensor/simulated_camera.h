@@ -19,9 +19,10 @@ class SceneHolder {
  public:
   explicit SceneHolder(PlateScene scene);
   [[nodiscard]] std::shared_ptr<const PlateScene> scene() const;
-  /// Sets a scene to which every detector counts as settled.
+  /// Sets the scene. Every detector is then treated as settled to this scene.
   void set(PlateScene scene);
-  /// Steps the contrast between the last frame and the next, at moments spread evenly over the frame period.
+  /// Steps the contrast between the last frame and the next frame. The times of successive steps are spread evenly over
+  /// the frame period.
   void step_to(double delta_t_k);
   /// Returns the scene at a time of the camera's clock, and makes this the present time. During a run the plate is in
   /// motion. After a step the scene has the contrast that the detector has reached.

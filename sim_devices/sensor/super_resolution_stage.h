@@ -27,8 +27,8 @@ struct SuperResolutionStageOptions {
 [[nodiscard]] cv::Point2d dither_px(int n, std::uint64_t index);
 
 /// Returns a stage that applies super_resolve() to the last frames. Until there are enough frames, it repeats each
-/// pixel. Positions in the picture are means over its frames. Errors of process(): `not_identifiable` with the message
-/// of super_resolve() or frame_shifts(); the next picture may succeed.
+/// pixel. Positions in the result refer to the mean shift of the combined frames. Errors of process():
+/// `not_identifiable` with the message of super_resolve() or frame_shifts(); the next picture may succeed.
 [[nodiscard]] std::unique_ptr<ChainStage> super_resolution_stage(const SuperResolutionStageOptions& options);
 
 }  // namespace todbench

@@ -12,19 +12,19 @@ namespace todbench {
 /// Asymptotic probabilities of a false alarm if the model is correct. In a simulation study, the probability of each
 /// kind was below 0.01 in every design (docs/method/uncertainty.md).
 inline constexpr FalseAlarms false_alarms{.departure = 0.003, .lapse = 0.005, .scatter = 0.003};
-/// A significant departure from the model makes a threshold unfit if two limits are exceeded. First limit: the relative
-/// change of the threshold by the best alternative description of the answers.
+/// First of two limits for a significant departure from the model. If both are exceeded, the threshold is unfit.
+/// Relative change of the threshold when the best alternative function (best_alternative()) is fitted instead.
 inline constexpr double immaterial_shift = 0.02;
-/// Second limit: the same change, as a share of the half-width of the 95 % interval. 0.5 is about one standard error;
-/// an interval with such a bias has a coverage of 83 %.
+/// Second limit for a departure: the same change, divided by the half-width of the 95 % interval. 0.5 is about one
+/// standard error; an interval with this bias contains the true threshold with a probability of 83 %.
 inline constexpr double immaterial_share_of_half_width = 0.5;
-/// Scatter makes a threshold unfit if two limits are exceeded. First limit: the variance of the scatter divided by the
-/// variance expected by chance.
+/// First of two limits for scatter. If both are exceeded, the threshold is unfit. Variance of the scatter divided by
+/// the variance expected by chance.
 inline constexpr double immaterial_dispersion = 1.5;
-/// Second limit: the widening of the interval on each side due to the scatter, as a share of the threshold.
+/// Second limit for scatter: the amount by which scatter widens the interval on each side, divided by the threshold.
 inline constexpr double immaterial_widening = 0.01;
-/// Permitted relative difference between the fit and an exact direct estimate. 1 % is for the difference between the
-/// fitted form and the function of the observer, and 1 % is for the error of the direct estimate.
+/// Permitted relative difference between the fit and an exact direct estimate. It is the sum of 1 % for the difference
+/// between the fitted form and the observer's function, and 1 % for the error of the direct estimate.
 inline constexpr double direct_estimate_tolerance = 0.02;
 /// Standard deviation of the noise, in counts, below which the rounding error is not white noise.
 inline constexpr double least_noise_counts = 0.5;

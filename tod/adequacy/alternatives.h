@@ -12,7 +12,7 @@ namespace todbench {
 
 /// The alternative function that describes the answers best, by likelihood and number of parameters (Akaike 1974).
 struct Alternative {
-  std::string name;     ///< text for a sentence: "the acuity form", "a free lapse rate of 0.031"
+  std::string name;     ///< part of a sentence in reports: "the acuity form", "a free lapse rate of 0.031"
   double ln_shift = 0;  ///< ln(threshold of the alternative / threshold of the fit)
 };
 

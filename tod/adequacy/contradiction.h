@@ -13,7 +13,7 @@ namespace todbench {
 /// Permitted probability of a false alarm of each of these tests, over all sizes.
 inline constexpr double false_alarms_of_contradiction = 0.001;
 
-/// Size at which the answers contradict their expected proportion.
+/// A size at which the proportion of correct answers contradicts the expected one.
 struct Contradiction {
   double size = 0;
   double correct = 0, total = 0;  ///< answers at this size
@@ -26,7 +26,7 @@ struct Contradiction {
 /// of a size come from several clusters, its counts are divided by the ratio of the clustered to the binomial variance.
 [[nodiscard]] std::optional<Contradiction> below_chance(std::span<const Level> levels, double probability);
 
-/// Tests whether the answers contradict a fit with the verdict step. Permitted proportions at each size are those
+/// Tests whether the answers contradict a fit whose verdict is `step`. At each size, any proportion is permitted
 /// between the fitted function and the infinitely steep function with the same threshold. Also empty if the fit has no
 /// threshold or no slope.
 [[nodiscard]] std::optional<Contradiction> contradicts_step(std::span<const Level> levels, const PsychometricFit& fit,

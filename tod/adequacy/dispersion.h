@@ -33,10 +33,10 @@ struct Dispersions {
 
 /// Returns Pearson's statistic over groups of neighbouring sizes. Each group has enough trials for a chi-square
 /// distribution (at least four times the variance of one answer). The statistic is orthogonal to the fitted parameters
-/// and to `besides`, and uses the exact covariance. For clustered data, its distribution is that of Rao and Scott
-/// (1984) with the second-order correction. If trials are independent and a size has several rows, Pearson's statistic
-/// of these rows is added, with its exact conditional mean and variance (Dawson 1954). `clusters`: number of clusters
-/// of the fit; 0: independent trials.
+/// and to the directions in `besides`, and uses the exact covariance. For clustered data, its distribution is that of
+/// Rao and Scott (1984) with the second-order correction. If trials are independent and a size has several rows,
+/// Pearson's statistic of these rows is added, with its exact conditional mean and variance (Dawson 1954). `clusters`:
+/// number of clusters of the fit; 0: independent trials.
 [[nodiscard]] Dispersions dispersions(const ModelResiduals& model, std::span<const Level> levels,
                                       std::span<const Direction> besides, double clusters);
 

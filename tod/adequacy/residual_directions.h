@@ -47,8 +47,8 @@ struct Direction {
   double score = 0;             ///< standard normal under the model
 };
 
-/// Computes directions from weights of the residuals. A direction is orthogonal to the fitted parameters and to
-/// `besides`. It is empty if less than a hundredth of the variance of the weights then remains.
+/// Computes directions from weights of the residuals. A direction is orthogonal to the fitted parameters and to the
+/// directions in `besides`. It is empty if less than a hundredth of the variance of the weights then remains.
 class Directions {
  public:
   explicit Directions(const ModelResiduals& model);

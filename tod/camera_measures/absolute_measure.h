@@ -66,8 +66,8 @@ struct AbsoluteMeasure {
   Estimate prnu_percent{};  ///< standard deviation of the responsivity over the pixels, without shading
   /// Fixed pattern at the middle temperature, separately for the camera and for the source. Empty: not separated.
   std::optional<Estimate> camera_pattern_k{}, source_pattern_k{};
-  /// Linear slope over the picture, as largest minus smallest value. It cannot be assigned to the camera or to the
-  /// source.
+  /// Linear gradient across the picture, largest minus smallest value. The measurement cannot tell whether it comes
+  /// from the camera or from the source.
   std::optional<double> undetermined_slope_k{};
   /// Temperatures of the lowest and the highest count, if the scale states them.
   std::optional<double> lowest_k{}, highest_k{};

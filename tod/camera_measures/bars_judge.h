@@ -60,7 +60,7 @@ class BarsJudge {
   struct LeftOut {
     static constexpr std::size_t none = -1;
     std::size_t set_up = none, frame_part = none;
-    /// Returns the first `draws` elements of a row without the part.
+    /// Returns the first `draws` elements of a row, without those of the left-out part.
     [[nodiscard]] std::vector<float> rest(const std::vector<float>& row, std::size_t draws) const;
   };
 
@@ -82,10 +82,11 @@ class BarsJudge {
   [[nodiscard]] MrtdPoint point(const Place& place) const;
 
   MrtdOptions options_;
-  /// The observer of the plan. With an eye also the best and the worst observer of the range of its open parameters.
+  /// The observer of the plan. If it models an eye, then also the best and the worst observer within the range of the
+  /// eye's open parameters (open_parameters.h).
   std::vector<TemplateObserverSpec> observers_;
   std::vector<Place> places_;
-  /// Rectangles of the targets and alternatives of places_, in turn. mounted() transforms them for each mounting.
+  /// Rectangles of the targets and alternatives of places_, alternately. mounted() transforms them for each mounting.
   TargetPlate positions_;
   std::vector<double> said_sum_k_;
   std::vector<int> said_count_;

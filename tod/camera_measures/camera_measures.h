@@ -79,8 +79,8 @@ struct CameraMeasuresOptions {
   int timing_frames = 0;
   /// Options of the latency, measured with runs of the stage. Empty: not measured.
   std::optional<LatencyOptions> latency{};
-  /// Options of the MRTD. Response, IFOV and the number of frames for locating the plate are set later. Empty: not
-  /// measured.
+  /// Options of the MRTD. measure_camera() sets the response, the IFOV and the number of frames for locating the plate.
+  /// Empty: not measured.
   std::optional<MrtdOptions> mrtd{};
   /// Options of the automatic gain, measured with contrast steps of the first plate. Empty: not measured.
   std::optional<ResponseOptions> gain_control{};

@@ -59,8 +59,7 @@ struct MrtdPoint {
   std::string reason{};                  ///< reason for a missing threshold; empty if there is one
   std::optional<double> best_phase_k{};  ///< threshold at the best sampling phase; empty: not found
   Interval best_phase_ci95{};
-  /// Distance between the middle of the bars and the nearest pixel border, 0 to 0.5 pixels, at the location of the
-  /// plate.
+  /// Distance between the middle of the bars and the nearest pixel border at the best sampling phase, 0 to 0.5 pixels.
   double best_phase = 0;
   /// Shares of correct decisions by contrast, over all set-ups.
   std::vector<double> positive_share{}, negative_share{};

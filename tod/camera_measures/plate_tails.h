@@ -21,7 +21,8 @@ namespace todbench {
                                                     std::size_t which, const cv::Rect2d& plate,
                                                     const TailBounds& bounds);
 
-/// Returns the same tails for a part of the picture that begins at `origin`.
+/// Returns the same tails for a part of the picture. `origin`: position of the upper left pixel of this part in the
+/// whole picture.
 [[nodiscard]] PlateTails moved_to(const PlateTails& tails, cv::Point origin);
 
 }  // namespace todbench

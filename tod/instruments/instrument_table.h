@@ -135,7 +135,7 @@ struct StageRun {
   NumberQuestion measured;
 };
 
-/// A selection by a word, such as a plate or a mounting.
+/// Commands that select a plate or a mounting by a word.
 struct StageChoice {
   std::string set;        ///< for example "ROUT:PLAT {}"; empty: there is only one plate or mounting
   std::string set_point;  ///< query of the requested word; empty: the word is commanded each time

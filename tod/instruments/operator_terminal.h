@@ -16,8 +16,8 @@ namespace todbench {
 class LineSource {
  public:
   virtual ~LineSource() = default;
-  /// Returns the next line without its end. Errors: `interrupted` (at once when stop is requested), `disconnected` (end
-  /// of input).
+  /// Returns the next line without its end. Errors: `interrupted` (immediately when stop is requested), `disconnected`
+  /// (end of input).
   [[nodiscard]] virtual Result<std::string> next_line(const std::stop_token& stop) = 0;
 };
 

@@ -26,8 +26,8 @@ struct ScpiClientOptions {
   std::size_t longest_answer = 8192;
 };
 
-/// The four fields of the answer to *IDN? (IEEE 488.2, 10.14). If an instrument answers in another form, only `model`
-/// is set.
+/// The four fields of the answer to *IDN? (IEEE 488.2, 10.14). If an instrument answers in a different form, only
+/// `model` is set.
 struct ScpiIdentity {
   std::string vendor, model, serial, firmware;
   bool operator==(const ScpiIdentity&) const = default;
@@ -36,8 +36,9 @@ struct ScpiIdentity {
 [[nodiscard]] std::string to_text(const ScpiIdentity& identity);
 
 /// A connection. One thread at a time. SYST:ERR? (or the error query of the table) is sent after each exchange, so a
-/// refused command is reported as an error at once. After `disconnected`, `timeout` or `interrupted` the connection is
-/// closed, because a late answer could be mistaken for the answer to the next query. Connect again after these errors.
+/// refused command is reported as an error immediately. After `disconnected`, `timeout` or `interrupted` the connection
+/// is closed, because a late answer could be mistaken for the answer to the next query. Connect again after these
+/// errors.
 class ScpiClient {
  public:
   /// Connects to an instrument. `endpoint`: as for instrument_address(). Clears the instrument's error queue and sends

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Selects the frames that may be measured. Such frames are accepted by the integrity gate, exposed after the last
-// change of the scene, and not exposed during a correction.
+// Selects the frames that may be measured: the integrity gate accepted them, and they were exposed after the last
+// change of the scene and not during a correction.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +23,7 @@ namespace todbench {
 struct RejectedFrame {
   std::uint64_t sequence = 0;
   Rejection reason = Rejection::incomplete;
-  std::optional<CorrectionSign> seen{};  ///< sign of a correction, if the picture showed one
+  std::optional<CorrectionSign> seen{};  ///< evidence of a correction, if the picture showed any
 };
 
 /// Options of FrameTaker.

@@ -50,8 +50,8 @@ struct JudgedContrast {
 [[nodiscard]] Result<EffectiveContrast> judged_levels(const Frame& frame, const TargetPlate& mounted_plate,
                                                       const Registration& registration, double min_size_px);
 
-/// Ratio of two noise memories (LagDifferences::memory()): that of the noise after the stages, and that of the camera's
-/// noise. Computed from successive frames of one scene.
+/// Ratio of the noise memory after the stages to that of the camera's noise. Computed by LagDifferences::memory() from
+/// successive frames of one scene.
 class JudgedMemory {
  public:
   explicit JudgedMemory(int frames) : camera_(frames, FrameGain::changing), judged_(frames, FrameGain::changing) {}

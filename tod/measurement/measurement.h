@@ -151,9 +151,9 @@ struct MeasurementResult {
 /// of the plate.
 [[nodiscard]] RandomStream answer_noise(std::uint64_t seed, std::int64_t presentation, std::size_t triangle);
 
-/// Runs a schedule. Returns an error only if no measurement is possible (plate not found, camera without temperature
-/// scale, sizes that do not fit). A run that ends early returns its trials and `ended_by`. `host` and `listener` are
-/// used only during the call.
+/// Runs a schedule. Returns an error only if no measurement is possible: the plate is not found, the camera has no
+/// temperature scale, or find_misfits() rejects the geometry. A run that ends early returns its trials and `ended_by`.
+/// `host` and `listener` are used only during the call.
 [[nodiscard]] Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer,
                                                 TrialSchedule& schedule, const MeasurementOptions& options,
                                                 RunController& host, const MeasurementListener& listener,

@@ -92,8 +92,8 @@ struct MovingListener {
 };
 
 /// Checks the input of measure_moving() before the camera starts. Errors: `invalid_input` (a target that cannot move,
-/// speeds above 5 pixels a frame, displayed samples finer than the detectors, contrasts in grey levels, sizes that do
-/// not fit), `calibration` (no temperature scale).
+/// speeds above 5 pixels a frame, displayed samples finer than the detectors, contrasts in grey levels, or a geometry
+/// that find_misfits() rejects), `calibration` (no temperature scale).
 [[nodiscard]] Result<void> check_moving(const SourceInfo& camera, Target& target, TemplateObserver& observer,
                                         const MovingMeasurementOptions& options);
 

@@ -142,7 +142,7 @@ inline constexpr double most_correlation_change = 0.2;  ///< five errors of 16 f
 /// computed for each picture. The residue is the share in the first picture minus the mean share in the second half of
 /// the pictures. The limit includes five standard deviations of the shares in the second half. The noise is the median
 /// over the pixels. Empty as for picture_residue(), for fewer than eight pictures, and if `before` is empty or has
-/// another size.
+/// a different size.
 [[nodiscard]] std::optional<PictureResidue> judged_residue(const cv::Mat1d& before, std::span<const cv::Mat1w> pictures,
                                                            const cv::Mat1d& mean);
 /// Smallest limit of a residue. It exceeds the residue that rounding, or a fixed pattern that drifts between

@@ -28,8 +28,8 @@ namespace todbench {
                                               std::function<void(const RejectedFrame&)> on_rejected = {});
 
 /// Checks a measurement before the camera is started. Errors: `calibration` (contrasts in kelvin, but a camera without
-/// a temperature scale); `invalid_input` (sizes or windows that do not fit, or contrasts in grey levels and a plate
-/// with fewer than two large enough triangles); the errors of the observer.
+/// a temperature scale); `invalid_input` (a geometry that find_misfits() rejects, or contrasts in grey levels and a
+/// plate with fewer than two large enough triangles); the errors of the observer.
 [[nodiscard]] Result<void> check_before_measuring(const MeasurementOptions& options, Observer& observer,
                                                   const SourceInfo& camera);
 /// Performs the part of check_before_measuring() that needs only the plates.

@@ -23,7 +23,7 @@ struct DriftGroup {
 /// Form of the change with time.
 enum class DriftShape {
   linear,    ///< t
-  approach,  ///< 1 - exp(-t / T)
+  approach,  ///< 1 - exp(-t / T): exponential change towards a limit
 };
 [[nodiscard]] std::string_view to_string(DriftShape shape);
 
@@ -32,9 +32,9 @@ struct DriftFit {
   DriftShape shape = DriftShape::linear;
   double change_k = 0;                    ///< change from the first group to the last, according to the fit
   Interval change_ci95{};                 ///< in kelvin
-  std::optional<double> time_constant_s;  ///< time constant of an approach; empty for a straight line
+  std::optional<double> time_constant_s;  ///< T of an exponential; empty for a straight line
   Interval time_constant_ci95{};          ///< a side that the data do not determine is open
-  double p_linear = 1;                    ///< p value of a straight line against an approach (F test)
+  double p_linear = 1;                    ///< p value of a straight line against an exponential (F test)
   std::vector<double> seen_k, fitted_k;   ///< observed and fitted values of each group
 };
 
@@ -57,10 +57,12 @@ inline constexpr std::size_t least_drift_groups = 8;
 
 /// Fits level and pattern as functions of time. Groups are weighted by their number of frames. The level is fitted by
 /// least squares. The pattern is fitted by analysis of variance of the pixels' regressions on time, with modified
-/// large-sample intervals (Graybill and Wang 1980). If the residuals of a straight line are significant (F test at 1
-/// %), the straight line is replaced by an approach with the least-squares time constant. For the pattern, F is reduced
-/// by the gain that a search for a time constant finds in the noise of many pixels. Errors: `invalid_input` (fewer than
-/// eight groups, groups without frames, times that do not increase, pictures below 4 x 4 pixels or of different sizes).
+/// large-sample intervals (Graybill and Wang 1980). The fit begins with a straight line. An exponential with the time
+/// constant of least squares replaces it if the residuals are then significantly smaller (F test at 1 %). In the noise
+/// of many pixels, a search for a time constant always finds an exponential that fits a little better than the line.
+/// For the pattern, F is therefore first reduced by 2.5 standard deviations of the improvement that noise alone causes.
+/// Errors: `invalid_input` (fewer than eight groups, groups without frames, times that do not increase, pictures below
+/// 4 x 4 pixels or of different sizes).
 [[nodiscard]] Result<DriftLaw> drift_law(std::span<const DriftGroup> groups);
 
 }  // namespace todbench

@@ -43,8 +43,8 @@ struct TemporalNoise {
   /// frames. The second condition is needed because some cameras disturb single frames. False for fewer than eight
   /// pairs.
   bool changes = false;
-  /// 0 for a pixel that never changes, or with more than twice the noise of the median pixel, because the scene moved
-  /// there. Otherwise not 0.
+  /// Not 0: usable. 0: the pixel never changes, or it has more than twice the noise of the median pixel, which
+  /// indicates that the scene moved there.
   cv::Mat1b usable;
   double usable_share = 1;  ///< share of usable pixels
 };

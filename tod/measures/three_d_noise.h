@@ -59,9 +59,10 @@ struct NoiseTable {
   ByComponent degrees_of_freedom;  ///< t T-1, v V-1, h H-1, and their products
   /// First-order correlation rho of tvh in successive frames, for which the estimates are corrected; below 1. 0:
   /// analysis of variance with independent cells. If the noise has memory, its variance over T frames is too small, and
-  /// more than 1/T of the variance remains in the mean frame: E Q_tvh = h tvh^2 and E Q_vh = T vh^2 + g tvh^2 with g =
-  /// 1 + 2 sum over k < T of (1 - k / T) rho^k and h = 1 - (g - 1) / (T - 1). For example, with rho = 0.8 and 64
-  /// frames, the uncorrected noise is 6 % too low, and there is an apparent fixed pattern of a third of the noise.
+  /// more than 1/T of the variance remains in the mean frame. The mean squares Q have the expectations E Q_tvh = h
+  /// tvh^2 and E Q_vh = T vh^2 + g tvh^2 with g = 1 + 2 sum over k < T of (1 - k / T) rho^k and h = 1 - (g - 1) / (T -
+  /// 1). For example, with rho = 0.8 and 64 frames, the uncorrected noise is 6 % too low, and there is an apparent
+  /// fixed pattern of a third of the noise.
   double pixel_memory = 0;
 };
 
@@ -127,9 +128,9 @@ class NoiseCube {
   [[nodiscard]] bool noise_changes() const;
   /// Returns the index of a row at the upper or lower edge that is not part of the picture, for example telemetry. Each
   /// of the outer four rows is compared with the four rows further inside. A row is outside the picture if one of two
-  /// conditions is met. Its mean square successive difference, without changes of the whole row, exceeds 100 times
-  /// theirs. Or the mean difference of its adjacent pixels in the mean frame exceeds 10 times theirs. Noise and a scene
-  /// behind a lens stay far below both limits. Empty: no such row, or fewer than 16 rows.
+  /// quantities is much larger than in these rows: the mean square successive difference without changes of the whole
+  /// row (100 times), or the mean difference of adjacent pixels in the mean frame (10 times). Noise and a scene behind
+  /// a lens stay far below both limits. Empty: no such row, or fewer than 16 rows.
   [[nodiscard]] std::optional<int> row_outside_picture() const;
 
  private:

@@ -19,7 +19,9 @@ enum class MisfitKind {
   contrast_and_size,  ///< number correct by contrast and size: sum of (observed - expected)^2 / variance
   confusion,    ///< the same sum for the number of answers, by direction of the triangle and by answered direction
   calibration,  ///< the same sum for the number correct, over groups of patches with similar predicted probability
-  surprise,     ///< (sum of -ln p of the answers - its expectation)^2 / variance
+  /// (s - expectation of s)^2 / variance of s, where s is the sum of -ln p over the answers, and p is the probability
+  /// that the model gives to the chosen alternative.
+  surprise,
   /// As surprise, but only for wrong answers. p is the probability of the chosen alternative, given that the answer is
   /// wrong.
   wrong_answers,

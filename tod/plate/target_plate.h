@@ -40,8 +40,9 @@ struct PlateBars {
   double angle_deg = 0;     ///< clockwise angle from x to the direction across the bars
 };
 
-/// Orientation in which the plate is held. A mounting exchanges positions *and* directions of the triangles. Effects of
-/// memory and of asymmetry therefore cancel.
+/// Orientation in which the plate is held. A mounting changes the positions *and* the directions of the triangles. In
+/// the mean over mountings, the effects of an observer's memory of the plate and of an asymmetric camera therefore
+/// cancel.
 enum class Mounting { identity, rotated_180, mirrored_horizontally, mirrored_vertically };
 inline constexpr std::array all_mountings{Mounting::identity, Mounting::rotated_180, Mounting::mirrored_horizontally,
                                           Mounting::mirrored_vertically};

@@ -65,7 +65,7 @@ struct OperatorRequest {
 enum class OperatorAnswer { done, stop };
 
 /// Shows a request to the operator and waits for the answer. Called from the thread of the run. Errors: `interrupted`
-/// (at once when stop is requested), `disconnected` (the operator can no longer answer).
+/// (immediately when stop is requested), `disconnected` (the operator can no longer answer).
 using AskOperator = std::function<Result<OperatorAnswer>(const OperatorRequest& request, const std::stop_token& stop)>;
 
 /// Returns the steps from one state to the next. Without a last state, plate and contrast are requested. A move is

@@ -13,8 +13,9 @@ namespace todbench {
 class SteppingTarget {
  public:
   virtual ~SteppingTarget() = default;
-  /// Steps from the presented state to another contrast, at a random time within the next frame that the camera cannot
-  /// predict. Returns before the step. Errors: `invalid_input` (a contrast that it cannot show), `interrupted`.
+  /// Steps from the presented state to a different contrast. The step occurs at a random time within the next frame,
+  /// independent of the camera. Returns before the step. Errors: `invalid_input` (a contrast that it cannot show),
+  /// `interrupted`.
   [[nodiscard]] virtual Result<void> step_to(double delta_t_k, std::stop_token stop) = 0;
 };
 

@@ -54,7 +54,8 @@ struct ClusteredVariance {
 /// position in the picture is therefore added: V_place - V_triangle, where a triangle is the part of a position in one
 /// set-up (two-way, Cameron, Gelbach and Miller 2011). A negative value is set to zero. With fewer set-ups,
 /// presentations and positions are two-way clusters: V_presentation + V_place - V_answer, at least V_presentation and
-/// at least V_place. This variance is never too small, but it is too large if evenly spread phases cancel.
+/// at least V_place. This variance is never too small, but it is too large if the effects of evenly spread phases
+/// cancel.
 ///
 /// Binary answers (`binomial`): for any number of set-ups, presentations and triangles are two-way clusters, with at
 /// least the binomial variance. Set-ups are not the clusters: the binomial scatter is far larger than the variation

@@ -20,9 +20,9 @@ struct ContrastError {
   double noise_k = 0;  ///< standard error due to the noise of the pixels alone; 0: not known
 };
 
-/// Returns the error of a contrast for reports and schedules. It is the given error or the error due to the noise of
-/// the pixels, whichever has the wider 95 % interval. The reason is that the scatter over a few set-ups may be small by
-/// chance.
+/// Returns the error of a contrast for reports and schedules: the given error, or the error due to the noise of the
+/// pixels alone if that has the wider 95 % interval. With few set-ups the scatter may be small by chance; the noise of
+/// the pixels is then a lower limit of the error.
 [[nodiscard]] ContrastError at_least_the_noise(ContrastError error);
 
 /// Sets the standard errors of the contrasts in the points of a curve, by set contrast. A point without an entry is not
@@ -46,7 +46,8 @@ void set_contrast_errors(TodCurve& curve, const std::map<double, ContrastError>&
 /// neighbour has a threshold, the slope is 1, as for an acuity proportional to the contrast.
 [[nodiscard]] std::vector<double> contrast_slopes(const TodCurve& curve);
 
-/// Smallest value of d ln S75 / d ln contrast, from measurements.
+/// Least magnitude of d ln S75 / d ln contrast that contrast_effects() assumes. The value was determined in simulated
+/// sessions (docs/validation/coverage.md).
 inline constexpr double measured_contrast_slope = 1.14;
 
 /// Returns for each point the change of ln S75 with ln contrast: contrast_slopes(), but at least
@@ -62,8 +63,8 @@ struct ContrastScatter {
 /// Returns for each point the standard error of the contrast times contrast_effects().
 [[nodiscard]] std::vector<ContrastScatter> contrast_scatter(const TodCurve& curve);
 
-/// Adds a standard uncertainty `u` of ln threshold, which the answers do not contain, to the intervals of a fit, using
-/// Student's t with these degrees of freedom.
+/// Widens the intervals of a fit by a standard uncertainty `u` of ln threshold that does not come from the answers.
+/// Uses Student's t with `degrees_of_freedom`.
 void join_uncertainty(PsychometricFit& fit, double u, std::optional<double> degrees_of_freedom);
 
 /// Adds the scatter of the effective contrast as an uncertainty of S75. The effective contrast is used for the scores,

@@ -40,7 +40,7 @@ struct Criterion {
   ProbabilityForm form = ProbabilityForm::johnson;
 };
 
-/// The quantity, of resolution and contrast, whose relative change has the larger effect on the range.
+/// The quantity whose relative change has the larger effect on the range.
 enum class DominantLimit { resolution, contrast };
 [[nodiscard]] std::string_view to_string(DominantLimit limit);
 

@@ -29,11 +29,20 @@ struct MrtdFormula {
 /// Axis along which the bars are resolved. horizontal: bars along y; vertical: bars along x.
 enum class BarAxis { horizontal, vertical };
 
-/// Returns the noise of the four bars after integration by eye and brain, in kelvin: SNR NETD sqrt(E_t E_w E_L +
-/// (vh/tvh)^2 E_w E_L + (th/tvh)^2 E_t E_w + (h/tvh)^2 E_w). E_t = 1 / (frame rate x integration time); E_w = 2 p int
-/// N^2 sinc^2(v w) dv over a bar's width w = 1 / (2 f), E_L over its length 7 w. If n samples share a detector, the
-/// factors of vh contain p shared_density() instead of p. At low frequencies this density is n times as large, as for
-/// samples at the pitch of the detectors. Preconditions: all values > 0.
+/// Returns the noise of the four bars after integration by eye and brain, in kelvin. For the horizontal axis it is
+///   SNR NETD sqrt(E_t E_w E_L + (vh/tvh)^2 F_w F_L + (th/tvh)^2 E_t E_w + (h/tvh)^2 E_w).
+/// For the vertical axis, tv and v replace th and h. Each factor is the share of a noise variance that remains after
+/// integration:
+/// - E_t: over time, 1 / (frame rate x integration time).
+/// - E_w: over the width w = 1 / (2 f) of a bar, where f is the frequency of the bars. It is
+///   E_w = 2 p int_0^inf N(u)^2 sinc^2(u w) du,
+/// where u is the frequency of the noise, p the pitch of the samples, and N the transfer function of the noise filter.
+/// - E_L: over the length of a bar. It is the same integral with 7 w in place of w.
+/// - F_w and F_L: as E_w and E_L, but for the fixed offsets (vh). If n samples along an axis share a detector, they
+/// have the same offset. The integrand is therefore multiplied by shared_density(n, u p), the spectral density of such
+/// offsets. At low frequencies it is n, so the offsets count like those of samples at the pitch of the detectors. For
+/// n = 1, F_w = E_w and F_L = E_L.
+/// Preconditions: all values > 0.
 [[nodiscard]] double perceived_noise_k(const MrtdFormula& formula, double frequency_per_mrad, BarAxis axis);
 
 /// Returns the spectral density of noise common to n neighbouring samples, relative to independent samples of the same
@@ -41,8 +50,9 @@ enum class BarAxis { horizontal, vertical };
 /// Precondition: n > 0.
 [[nodiscard]] double shared_density(int n, double cycles_per_sample);
 
-/// Returns the MRTD: (pi^2 / 8) perceived noise / MTF. The factor 8 / pi^2 is the first harmonic of bars, 4 / pi, times
-/// its mean over half a period. Precondition: mtf > 0.
+/// Returns the MRTD: perceived noise / (MTF 8 / pi^2). The factor 8 / pi^2 is the product of 4 / pi, the amplitude of
+/// the first harmonic of bars with amplitude 1, and 2 / pi, the mean of a sine over half a period.
+/// Precondition: mtf > 0.
 [[nodiscard]] double mrtd_k(const MrtdFormula& formula, double frequency_per_mrad, double mtf, BarAxis axis);
 /// Returns (pi / 2) perceived noise / modulation at the best phase. With fine sampling the modulation is 4 / pi MTF,
 /// and the result is the MRTD. This is a working definition; results differ from those of the program TRM.

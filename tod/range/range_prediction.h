@@ -63,9 +63,8 @@ struct RangePrediction {
   /// Range at which the probability is 75 %; empty if the target line does not intersect the TOD curve.
   std::optional<double> r75_m;
   Interval r75_ci95_m;  ///< 95 % interval from the intervals of the thresholds
-  /// R75 for the lowest and for the highest values of the spreads of the thresholds, low and high. This is not a
-  /// confidence interval. Empty: a threshold has no spread, or one of the two curves has no range. A note states the
-  /// reason.
+  /// Lowest and highest R75, computed with the lowest and with the highest S75 of the spreads. This is not a confidence
+  /// interval. Empty: a threshold has no spread, or one of the two curves has no range. A note states the reason.
   std::optional<std::pair<double, double>> r75_spread_m{};
   std::string reason;              ///< a sentence with the reason why there is no r75_m; otherwise empty
   std::vector<std::string> notes;  ///< assumptions of this prediction

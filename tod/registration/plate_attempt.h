@@ -54,8 +54,8 @@ struct PlateAttempt {
 [[nodiscard]] std::optional<PlateAttempt> attempt_mounting(const PlateSearch& search, const TargetPlate& plate,
                                                            Mounting relative);
 
-/// Improves mapping, positions and blur in turn. Then excludes triangles that are displaced by a bad pixel or dirt, as
-/// long as enough triangles remain.
+/// Improves mapping, positions and blur one after the other. Then excludes triangles that are displaced by a bad pixel
+/// or dirt, as long as enough triangles remain.
 [[nodiscard]] FittedMapping refine_attempt(const PlateSearch& search, PlateAttempt& at);
 
 /// Returns the positions of the triangles on the plate, in mm.

@@ -65,8 +65,8 @@ struct Registration {
 /// triangles are never located separately. The search covers scales within 30 % of the expected scale and 10 degrees of
 /// rotation beyond the limit, so that a wrong scale or rotation can be reported. Errors: `calibration` with a reason
 /// (plate not found or partly outside the picture; unexpected scale or rotation; unequal scales; residual too large;
-/// large triangles with other directions than stated, because the plate has another mounting); `invalid_input` (options
-/// or plate that make registration impossible, or a picture that is not finite).
+/// large triangles with other directions than stated, because the plate has a different mounting); `invalid_input`
+/// (options or plate that make registration impossible, or a picture that is not finite).
 [[nodiscard]] Result<Registration> register_plate(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                   const RegistrationOptions& options);
 

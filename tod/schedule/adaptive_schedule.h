@@ -106,7 +106,7 @@ class AdaptiveSchedule final : public TrialSchedule {
   void judge(Contrast& contrast) const;
   /// Fits the answers at a contrast; empty if the fit fails.
   [[nodiscard]] std::optional<TodPoint> fitted(const Contrast& contrast) const;
-  /// Sets the half-width at a contrast. Returns whether the half-width is below the target or cannot reach the target.
+  /// Sets the half-width at a contrast. Returns whether it is below the target, or cannot be reduced to the target.
   [[nodiscard]] bool narrow_enough(Contrast& contrast) const;
 
   AdaptiveOptions options_;

@@ -25,16 +25,17 @@ struct PsiOptions {
   double slope_probe_share = 0.1;  ///< share of trials at 45 % correct, which determine the slope
 };
 
-/// Chooses sizes one after another. It selects the size after whose answer the expected entropy of the marginal of the
-/// threshold is lowest (Kontsevich and Tyler 1999; the slope is a nuisance parameter, Prins 2013). The logarithm of the
-/// posterior is stored on a grid of ln threshold and ln slope. If the spread of the posterior is below two grid steps,
-/// the grid is re-centred and its step is halved. If the posterior reaches an edge, the grid moves. In both cases the
-/// posterior is recomputed from all answers. Use this class only to place trials, and fit_psychometric() to compute
-/// thresholds. For answers placed one by one, use the posterior interval of the fit, because the coverage of its
-/// profile interval is up to 2.6 points below 95 % (docs/method/uncertainty.md). One thread at a time.
+/// Chooses sizes one after another. It selects the size for which the expected entropy of the marginal posterior of the
+/// threshold, after the answer, is lowest (Kontsevich and Tyler 1999; the slope is a nuisance parameter, Prins 2013).
+/// The logarithm of the posterior is stored on a grid of ln threshold and ln slope. If the spread of the posterior is
+/// below two grid steps, the grid is re-centred and its step is halved. If the posterior reaches an edge, the grid
+/// moves. In both cases the posterior is recomputed from all answers. Use this class only to place trials, and
+/// fit_psychometric() to compute thresholds. For answers placed one by one, use the posterior interval of the fit,
+/// because the coverage of its profile interval is up to 2.6 points below 95 % (docs/method/uncertainty.md). One thread
+/// at a time.
 class PsiPlacement {
  public:
-  /// Starts without answers. `stream` decides on probes and on ties.
+  /// Starts without answers. `stream`: random numbers that select probe trials and break ties.
   PsiPlacement(const PsiOptions& options, RandomStream stream);
 
   /// Returns the next size. The size does not change until observe() is called.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Controls of the camera of the live picture: requests come from the window, and the thread of the camera executes
-// them.
+// Controls of the camera whose live picture is shown. Requests come from the window, and the thread of the camera
+// executes them.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Picture of one triangle, or of a scene behind air, after every stage of the simulated sensor.
+// Picture of one triangle, or of a scene seen through air, after every stage of the simulated sensor.
 #pragma once
 
 #include <QObject>
@@ -46,10 +46,10 @@ struct StagePicture {
   std::optional<std::pair<double, double>> grey_k{};
 };
 
-/// Computes the pictures. Scene, optics and detector are sampled 16 times per pitch; samples, noise and quantisation
-/// are the pictures of the sensor model itself; display and observer are enlarged 8 times. All pictures show the same
-/// square. A scene is computed as by `todbench picture` (scene_pictures()) at the accuracy `draft`. Errors: those of
-/// the loaders.
+/// Computes the pictures. Scene, optics and detector are sampled 16 times per pitch. The pictures of samples, noise and
+/// quantisation are those of the sensor model, with one pixel per sample. The pictures of display and observer are
+/// enlarged 8 times. All pictures show the same square. A scene is computed as by `todbench picture` (scene_pictures())
+/// at the accuracy `draft`. Errors: those of the loaders.
 [[nodiscard]] Result<std::vector<StagePicture>> chain_pictures(const ChainSettings& options);
 
 /// Presenter that computes the pictures in the background. Used in the window's thread.

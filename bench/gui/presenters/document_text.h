@@ -9,8 +9,8 @@
 
 namespace todbench {
 
-/// Writes `document` into `text`, which must be empty and whose layout paints figures with `drawings`. Borrows both for
-/// the call.
+/// Writes `document` into `text`, which must be empty and whose layout paints figures with `drawings`. Both are used
+/// only during the call.
 void write_text(QTextDocument& text, DrawingTextObject& drawings, const Document& document);
 
 }  // namespace todbench

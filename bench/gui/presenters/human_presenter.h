@@ -23,7 +23,7 @@ namespace todbench {
 struct HumanOptions {
   int per_size = 8;             ///< patches per contrast and size, or all if there are fewer
   std::optional<int> shown_ms;  ///< empty: until answered
-  int magnification = 24;       ///< screen pixels per displayed sample: finer than display and eye resolve
+  int magnification = 24;       ///< screen pixels per pixel of the camera, if the plan has no display
   std::uint64_t seed = 1;
   int training = 0;      ///< patches with feedback before the first patch that counts
   PersonFacts person{};  ///< stored with the answers
@@ -38,7 +38,7 @@ struct HumanOptions {
                                                             const HumanOptions& options);
 /// Returns the temperatures that are displayed as black and as white.
 [[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged);
-/// Returns these temperatures for a display of the plan; they are the levels of operator_picture().
+/// Returns the temperatures that operator_picture() shows as black and as white on the display of the plan.
 [[nodiscard]] LevelSpan grey_levels(const JudgedTrial& judged, const ViewedDisplay& display);
 /// Returns the patch as an operator sees it at the display, in pixels of the screen.
 [[nodiscard]] QImage picture_at_display(const JudgedTrial& judged, const ViewedDisplay& display);

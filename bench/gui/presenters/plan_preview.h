@@ -54,7 +54,7 @@ struct PlanForecast {
 /// Prediction at one contrast.
 struct PlannedContrast {
   double delta_t_k = 0;
-  std::optional<double> s75_mrad;  ///< S75 by the first tier of the planner, or by expected_thresholds()
+  std::optional<double> s75_mrad;  ///< S75 by CuedEstimate, or by expected_thresholds()
   std::optional<double> camera_uncertainty_percent, twin_uncertainty_percent;  ///< half of the 95 % interval of S75
 };
 

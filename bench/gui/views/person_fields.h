@@ -18,7 +18,7 @@ class PersonFields final : public QObject {
   Q_OBJECT
 
  public:
-  /// Adds the rows to the form, which outlives this object.
+  /// Adds the rows to the form, which must outlive this object.
   PersonFields(QFormLayout& form, QObject* parent);
 
   /// Shows or hides the row of the training, which only questions about frames use.

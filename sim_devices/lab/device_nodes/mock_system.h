@@ -12,8 +12,8 @@ struct _UMockdevTestbed;
 
 namespace todbench {
 
-/// Emulated system, one per process: the environment variable UMOCKDEV_DIR states its folder. Devices are attached to
-/// the system and are destroyed before it. Methods may be called from any thread, one at a time.
+/// Emulated system, one per process: the environment variable UMOCKDEV_DIR states its folder. Attach devices to the
+/// system, and destroy them before the system. Methods may be called from any thread, one at a time.
 class MockSystem {
  public:
   /// Creates the system.

@@ -18,7 +18,8 @@ enum class FeatureKind {
   scaled,      ///< a float: raw value of the register times `per_raw`, plus `offset`
   rate,        ///< a float: 10^6 over the raw value, 0.1 ... 1000 Hz
   ieee_float,  ///< a float in eight bytes; value at power-up: `real`
-  /// A float: `formula` of VALUE, stored as ieee_float, and CHOICE, the register of the feature `choice`.
+  /// A float, computed by `formula` from two variables: VALUE, stored as ieee_float, and CHOICE, the register of the
+  /// feature `choice`.
   formula,
   text,  ///< `bytes` characters
   /// A Boolean: bit `bit` of the register, counted from the highest as GenICam does for big-endian registers.

@@ -61,7 +61,7 @@ using Entries = std::vector<std::pair<std::string, std::uint32_t>>;
 [[nodiscard]] CameraFeature pixel_format(std::uint32_t address, const std::vector<PixelFormat>& formats);
 /// Returns PixelDynamicRangeMax, the largest count that the camera produces.
 [[nodiscard]] CameraFeature largest_count(std::uint32_t address, int significant_bits);
-/// Returns the feature with a lock while the camera streams.
+/// Returns the feature, locked against writes while the camera streams.
 [[nodiscard]] CameraFeature locked_while_streaming(CameraFeature feature);
 
 }  // namespace features

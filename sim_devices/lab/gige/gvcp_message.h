@@ -38,7 +38,7 @@ struct GvcpRequest {
   std::uint16_t command = 0;
   std::uint16_t id = 0;
   bool wants_acknowledge = false;         ///< the client requests an acknowledge
-  std::span<const std::uint8_t> payload;  ///< borrowed from the datagram
+  std::span<const std::uint8_t> payload;  ///< view into the datagram
 };
 
 /// Longest payload of a message: a READMEM of 536 bytes with its address.

@@ -56,7 +56,7 @@ struct GvspCameraConfig {
   std::string description = {};               ///< served description, text or ZIP archive; empty: the model's
   std::string description_url = {};           ///< stated location of the description; empty: the true location
   std::chrono::milliseconds memory_delay{0};  ///< delay before every response to READMEM
-  std::string deaf_feature = {};              ///< feature that accepts writes but keeps its value of power-up
+  std::string deaf_feature = {};              ///< feature that accepts writes but keeps its power-up value
   std::uint64_t seed = 1;                     ///< seed of the faults
 };
 

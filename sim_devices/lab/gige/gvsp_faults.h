@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faults between a camera and its client, decided in advance.
+// Transmission faults between an emulated camera and its client, drawn in advance.
 #pragma once
 
 #include <cstddef>

@@ -39,7 +39,7 @@ struct GvspFrame {
 struct GvspPacket {
   std::array<std::uint8_t, 44> head{};
   std::size_t head_bytes = 0;
-  std::span<const std::uint8_t> data;  ///< borrowed from the frame
+  std::span<const std::uint8_t> data;  ///< view into the frame
 };
 
 /// Returns packet `id` of a frame. Precondition: id < frame.packets().

@@ -46,7 +46,7 @@ struct PlateStageOptions {
   double plate_change_s = 5;           ///< duration of a change of the plate
   double mounting_change_s = 3;        ///< duration of a change of the mounting
   double slowest_run_mm_per_s = 0.01;  ///< the fastest run has the speed of the table
-  double run_jitter_mm = 0;  ///< standard deviation of the position during a run, drawn anew every millisecond
+  double run_jitter_mm = 0;  ///< standard deviation of the position during a run, a new random value every millisecond
   std::uint64_t seed = 1;    ///< seed of the jitter
   /// Error of the stage: returns the real position of the plate, which must be finite, for an indicated position of
   /// `indicated_mm`. Called from any thread. Empty: no error. The owner of the scene applies this error; the encoders

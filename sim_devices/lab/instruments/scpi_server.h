@@ -19,7 +19,7 @@ struct ScpiServerOptions {
   std::string address = "127.0.0.1";  ///< IPv4 address to listen on
   std::uint16_t port = 0;             ///< 0: the system chooses
   std::size_t longest_message = 512;  ///< characters; a longer line is skipped to its end and reported as -363
-  std::size_t most_clients = 8;       ///< a further client is disconnected at once
+  std::size_t most_clients = 8;       ///< a further client is disconnected immediately
   /// Number of unread characters of responses after which a client is disconnected.
   std::size_t most_unread = 64 * 1024;
 };

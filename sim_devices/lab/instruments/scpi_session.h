@@ -61,7 +61,7 @@ class ScpiLanguage {
 /// a time.
 class ScpiSession {
  public:
-  explicit ScpiSession(const ScpiLanguage& language) : language_(&language) {}  ///< `language` outlives the session
+  explicit ScpiSession(const ScpiLanguage& language) : language_(&language) {}  ///< `language` must outlive the session
   /// Executes one program message without its line end. Responses to several queries are separated by ';'; the result
   /// is empty if there is no response. A command error (-1xx) discards the rest of the message (IEEE 488.2). Headers
   /// after ';' continue the previous path (SCPI-99 6.2.4).

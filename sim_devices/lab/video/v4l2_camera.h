@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Emulated thermal camera behind a V4L2 device node. Clients under the preload library of umockdev open the node,
+// Emulated thermal camera with a V4L2 device node. Clients under the preload library of umockdev open the node,
 // configure it by ioctl and map its buffers, as with a kernel driver.
 #pragma once
 
@@ -33,8 +33,8 @@ struct VideoDriverQuirks {
 /// streams. An unplugged camera returns ENODEV, and udev announces its removal.
 ///
 /// The timestamps of the buffers (of unknown base, in the terms of V4L2) are times of the camera's clock, which
-/// advances by one frame period per exposure from power-up: exposure k has the time (k + 1) / rate. Exposures need a
-/// running stream.
+/// advances by one frame period per exposure from power-up: exposure k has the time (k + 1) / rate. The camera exposes
+/// only while a stream is running.
 ///
 /// Methods may be called from any thread.
 class EmulatedV4l2Camera {
