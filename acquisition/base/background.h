@@ -8,8 +8,8 @@
 
 namespace todbench {
 
-/// Runs `work` on its own thread. The program waits for it only at its end, after main and before static objects are
-/// destroyed, so the work must end by itself within seconds. Any thread.
+/// Runs `work` on a separate thread. The program waits for this thread after main, before static objects are destroyed.
+/// The work must therefore end by itself within seconds. Any thread.
 void start_in_background(std::function<void()> work);
 
 /// Same for work that can be moved but not copied. The work is destroyed on its thread after it has run.

@@ -23,7 +23,7 @@ void withhold_undecided(std::vector<PairedRatio>& ratios, const PackageResult& w
 [[nodiscard]] int exit_code(const PackageResult& result);
 /// Returns the acuity of a point that has a threshold with an interval.
 [[nodiscard]] std::optional<double> identified_acuity_per_mrad(const TodPoint& point);
-/// Gain and noise of a judged point, averaged over its set-ups. Only exists with stages after the camera.
+/// Gain and noise of a judged point, averaged over its set-ups. Requires stages after the camera.
 struct JudgedPoint {
   double gain = 0;        ///< contrast after the stages divided by the contrast before them
   double gain_error = 0;  ///< standard error

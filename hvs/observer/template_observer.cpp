@@ -175,12 +175,12 @@ class PreparedTemplateObserver final : public PreparedObserver {
                                    const TwoPatches& room, const AnswerRoom& answers) const {
     scale_patch(spec_, patch, contrast_k, room.signal);
     std::copy(room.signal.begin(), room.signal.end(), room.seen.begin());
-    add_own_noise(own_noise(spec_, patch, contrast_k), noise, room.seen, room.noise);
+    const double white = own_noise(spec_, patch, contrast_k);
+    add_own_noise(white, noise, room.seen, room.noise);
     bank_->project_all(std::array<std::span<const float>, 2>{room.signal, room.seen},
                        std::array<std::span<float>, 2>{room.scores, room.seen_scores});
     const Choice choice = choice_of(room.seen_scores, contrast_k, noise);
-    const ScoreNoiseLevels levels{.white = own_noise(spec_, patch, contrast_k),
-                                  .eye = bank_->eye() != nullptr ? bank_->eye()->sd(contrast_k) : 0};
+    const ScoreNoiseLevels levels{.white = white, .eye = bank_->eye() != nullptr ? bank_->eye()->sd(contrast_k) : 0};
     return {choice, answer_probabilities(own_noise_of_scores(), room.scores, levels, noise.sub(graded_sub_stream),
                                          draws, answers)};
   }

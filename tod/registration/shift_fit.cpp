@@ -156,29 +156,26 @@ cv::Point2d middle(const Polygon& polygon) {
   return sum / static_cast<double>(polygon.size());
 }
 
-struct PlaceVariances {
+/// One number for each parameter of fit_place(): shift x, shift y and rotation, then the amplitude.
+struct ParameterTerms {
   cv::Vec3d place;
   double amplitude = 0;
 };
 
 /// The largest variances of three assumptions on the noise: white, common to rows, common to columns.
-PlaceVariances largest_variances(std::span<const PlaceWindow> windows, const cv::Matx33d& inverse, double amplitude,
+ParameterTerms largest_variances(std::span<const PlaceWindow> windows, const cv::Matx33d& inverse, double amplitude,
                                  const cv::Vec3d& found, double energy, double white) {
-  struct Scores {
-    cv::Vec3d place;
-    double amplitude = 0;
-  };
-  std::map<int, Scores> rows, columns;
+  std::map<int, ParameterTerms> rows, columns;  // scores
   for (const PlaceWindow& w : windows) {
     for (std::size_t i = 0; i < w.data.size(); ++i) {
       const cv::Vec3d derivative = amplitude * w.derivative(i);
       const double residual = w.data[i] - derivative.dot(found);
       const int at = static_cast<int>(i);
-      for (Scores* line : {&rows[w.window.y + at / w.window.width], &columns[w.window.x + at % w.window.width]})
+      for (ParameterTerms* line : {&rows[w.window.y + at / w.window.width], &columns[w.window.x + at % w.window.width]})
         line->place += residual * derivative, line->amplitude += residual * w.shape[i] / energy;
     }
   }
-  PlaceVariances largest{white * cv::Vec3d(inverse(0, 0), inverse(1, 1), inverse(2, 2)), white / energy};
+  ParameterTerms largest{white * cv::Vec3d(inverse(0, 0), inverse(1, 1), inverse(2, 2)), white / energy};
   for (const auto* clusters : {&rows, &columns}) {
     cv::Matx33d middle_part = cv::Matx33d::zeros();
     double of_amplitude = 0;
@@ -243,7 +240,7 @@ std::optional<PlaceFit> fit_place(const cv::Mat1d& picture, std::span<const Poly
   // Four parameters of each polygon, shift and rotation.
   const double variance = residual / std::max(1.0, samples - 4.0 * static_cast<double>(windows.size()) - 3);
   const cv::Matx33d inverse = normal.inv() * (1 / (fit.amplitude * fit.amplitude));
-  const PlaceVariances largest = largest_variances(windows, inverse, fit.amplitude, found, energy, variance);
+  const ParameterTerms largest = largest_variances(windows, inverse, fit.amplitude, found, energy, variance);
   const cv::Vec3d& errors = largest.place;
   fit.amplitude_error = std::sqrt(largest.amplitude);
   fit.shift = {found[0], found[1]};
