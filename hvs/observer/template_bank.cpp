@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <type_traits>
 
 #include "hvs/observer/block_product.h"
 #include "hvs/observer/eye_noise.h"
@@ -144,19 +145,20 @@ void TemplateBank::project_all(std::span<const std::span<const float>> patches,
   for (std::size_t b = 0; b < blocks_; ++b) {
     const float* values = values_.data() + b * block * count;
     std::size_t k = 0;
-    for (; k + products_at_once <= patches.size(); k += products_at_once) {
-      std::array<const float*, products_at_once> factors{};
-      std::array<float*, products_at_once> sums{};
-      for (std::size_t i = 0; i < products_at_once; ++i) {
-        factors[i] = patches[k + i].data();
-        sums[i] = scores[k + i].data() + b * block;
-        std::fill_n(sums[i], block, 0.0F);
+    const auto take = [&]<std::size_t sets>(std::integral_constant<std::size_t, sets>) {
+      for (; k + sets <= patches.size(); k += sets) {
+        std::array<const float*, sets> factors{};
+        std::array<float*, sets> sums{};
+        for (std::size_t i = 0; i < sets; ++i) {
+          factors[i] = patches[k + i].data();
+          sums[i] = scores[k + i].data() + b * block;
+          std::fill_n(sums[i], block, 0.0F);
+        }
+        add_block_products(values, factors, count, sums);
       }
-      add_block_products(values, factors, count, sums);
-    }
-    for (; k + 2 <= patches.size(); k += 2)
-      block_products(values, {patches[k].data(), patches[k + 1].data()}, count,
-                     {scores[k].data() + b * block, scores[k + 1].data() + b * block});
+    };
+    take(std::integral_constant<std::size_t, products_at_once>());
+    take(std::integral_constant<std::size_t, 2>());
     if (k < patches.size()) block_product(values, patches[k].data(), count, scores[k].data() + b * block);
   }
 }
