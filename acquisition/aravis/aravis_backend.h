@@ -24,7 +24,7 @@ enum class AravisTransport {
 enum class PacketResend {
   automatic,  ///< missing packets are requested again if the camera's capability register shows support
   never,      ///< a frame with missing packets is delivered as incomplete when the next frame begins
-  always,     ///< missing packets are always requested again; a frame with missing packets is delayed by up to 0.1 s
+  always,     ///< missing packets are always requested again, which delays a frame by up to 0.1 s
 };
 
 /// Options of aravis_backend().
@@ -37,8 +37,8 @@ struct AravisOptions {
   /// GigE packet size including IP and UDP headers. 0: 8000 on loopback, otherwise the size that the camera states. The
   /// size is tested once when a stream is created, and negotiated only if the test packet does not arrive.
   int packet_size_bytes = 0;
-  /// Smallest receive buffer of the socket; at least eight payloads are requested in any case, because cameras send
-  /// whole frames in one burst.
+  /// Smallest receive buffer of the socket. Cameras send whole frames in one burst, so at least eight payloads are
+  /// always requested.
   std::uint64_t min_socket_buffer_bytes = 4U << 20U;
   /// Time limit for reading the description of a GigE camera. The description is read twice.
   std::chrono::milliseconds description_patience{30'000};
@@ -50,15 +50,16 @@ struct AravisOptions {
 /// blocks broadcasts; info().id of the source is "gige:VENDOR-SERIAL" in both cases. Opening applies the settings of
 /// the camera's family (linear temperature, full depth, filters off; camera_families.h), checks its test ramp if it has
 /// one, and reads everything back. The first commanded non-uniformity correction also switches automatic corrections
-/// off. Errors of opening: `not_found` (absent; busy, i.e. controlled by another program or by one that crashed within
-/// the heartbeat of about 3 s; no monochrome format of 10 ... 16 bits; description not safe to evaluate, see
+/// off. Errors of opening: `not_found` (absent; busy, because a different program controls it or crashed within the
+/// heartbeat of about 3 s; no monochrome format of 10 ... 16 bits; description not safe to evaluate, see
 /// description_guard.h), `interrupted`.
 ///
 /// stop() of a source returns within milliseconds if the camera answers and within 0.4 s if it has vanished. A get or
-/// set that is waiting for a vanished camera delays stop() by up to 2.5 s (five attempts of 0.5 s inside Aravis). A
-/// vanished GigE camera is reported as `disconnected` about 3 s after its last frame if next() is called with timeouts
-/// below 1 s, otherwise after 5 s by Aravis's heartbeat; an unplugged USB camera is reported immediately. If the source
-/// of a vanished camera is destroyed, a background thread that owns only the camera closes the connection (up to 8 s).
+/// set that is waiting for a vanished camera delays stop() by up to 2.5 s (five attempts of 0.5 s inside Aravis). If
+/// next() is called with timeouts below 1 s, a vanished GigE camera is reported as `disconnected` about 3 s after its
+/// last frame. Otherwise Aravis's heartbeat reports it after 5 s. An unplugged USB camera is reported immediately. If
+/// the source of a vanished camera is destroyed, a background thread that owns only the camera closes the connection
+/// (up to 8 s).
 [[nodiscard]] std::unique_ptr<CameraBackend> aravis_backend(AravisOptions options = {});
 
 }  // namespace todbench

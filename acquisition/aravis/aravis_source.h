@@ -78,7 +78,7 @@ class AravisSource : public FrameSource {
   void configure_transport();
   [[nodiscard]] Result<void> state_frame(const std::string& value);
   [[nodiscard]] Result<void> name_nuc_command(const std::string& value);
-  /// Returns an error if the camera has sent frames of only one size since the start and reports a different size.
+  /// Returns an error if no frame since the start has the size that the camera reports.
   [[nodiscard]] std::optional<Error> misstated_size(const Frame& frame, cv::Size sent);
   void check_socket_buffer(ArvStream* stream);
   void publish_socket_buffer();
@@ -101,8 +101,9 @@ class AravisSource : public FrameSource {
   bool bytes_swapped_ = false;  ///< the byte order is opposite to the order that the camera states
   bool corrections_taken_over_ = false;
   std::optional<double> stated_kelvin_per_count_, stated_offset_k_;
-  std::optional<cv::Size> stated_frame_;  ///< stated by the user if the camera states a wrong size
-  std::string nuc_command_;               ///< stated by the user; empty: command of the family, or found by name
+  std::optional<cv::Size> stated_frame_;  ///< size that the user stated because the camera states a wrong size
+  std::string nuc_command_;               ///< command that the user stated; empty: command of the family, or found by
+                                          ///< name
   StreamFormat format_;
   int frames_of_wrong_size_ = 0;  ///< successive frames of wrong size since the start; negative: a frame of the right
                                   ///< size has arrived

@@ -34,8 +34,8 @@ struct StreamFormat {
 [[nodiscard]] Result<std::vector<std::string>> prepare_camera(ArvCamera* camera, const CameraFamily& family,
                                                               const std::string& wanted);
 
-/// Reads geometry, format and payload as the camera reports them now. Limited to 16384 x 16384 pixels and 64 MiB,
-/// because these unverified numbers determine how much memory is allocated.
+/// Reads geometry, format and payload as the camera reports them now. The limits are 16384 x 16384 pixels and 64 MiB,
+/// because memory is allocated by these unverified numbers.
 [[nodiscard]] Result<StreamFormat> read_stream_format(ArvCamera* camera);
 
 /// Reads the scale of the camera's present settings; uncalibrated if the settings contain no scale. IRFormat (FLIR A3xx
@@ -56,8 +56,8 @@ struct StreamFormat {
 /// the selection of correction_commands().
 [[nodiscard]] std::vector<std::string> nonuniformity_commands(ArvDevice* device, const CameraFamily& family);
 
-/// Disables automatic corrections, so that only commands correct. Returns a warning if the camera cannot disable them.
-/// Errors: `disconnected`.
+/// Disables automatic corrections. The camera then corrects only on command. Returns a warning if the camera cannot
+/// disable them. Errors: `disconnected`.
 [[nodiscard]] Result<std::optional<std::string>> take_over_corrections(ArvDevice* device, const CameraFamily& family);
 
 }  // namespace todbench

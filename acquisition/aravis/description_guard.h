@@ -2,8 +2,9 @@
 // Prevents Aravis from evaluating unsafe descriptions of cameras. Private to the Aravis back end.
 //
 // When a feature is requested, Aravis follows every reference of the description, allocates memory by stated lengths
-// and divides by register values. Before the first request it only builds nodes from the text. So the text is read and
-// checked before Aravis opens a camera, and compared with the text that Aravis holds before any feature is requested.
+// and divides by register values. Before the first request, Aravis only builds nodes from the text. The guard therefore
+// reads and checks the text before Aravis opens the camera. Before any feature is requested, it compares the checked
+// text with the text that Aravis holds.
 #pragma once
 
 #include <chrono>
@@ -31,8 +32,8 @@ struct DescriptionReading {
 [[nodiscard]] Result<std::optional<std::string>> read_safe_description(const std::string& ipv4,
                                                                        const DescriptionReading& reading);
 
-/// Same for a USB3 Vision camera: reads the description through the manifest in the camera's registers. Empty if no
-/// camera has these names or another program uses it.
+/// Does the same for a USB3 Vision camera: reads the description through the manifest in the camera's registers. Empty
+/// if no camera has these names or a different program uses the camera.
 [[nodiscard]] Result<std::optional<std::string>> read_safe_description(const UsbNames& names,
                                                                        const DescriptionReading& reading);
 

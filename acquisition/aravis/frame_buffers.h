@@ -12,12 +12,13 @@
 
 namespace todbench {
 
-/// Returns the number of buffers of `payload_bytes` for a stream. They hold two seconds of frames, so no frame is lost
-/// while the consumer waits for a fit or a disk. 64 if the rate is unknown; at most 256 MiB.
+/// Returns the number of buffers of `payload_bytes` for a stream. The buffers hold two seconds of frames, so no frame
+/// is lost while the consumer waits for a fit or a disk. 64 if the rate is unknown; at most 256 MiB.
 [[nodiscard]] int buffer_count(double frame_rate_hz, std::size_t payload_bytes);
 
-/// Returns the size of a buffer that reveals a frame larger than stated. It is one byte more than the payload on a
-/// network, where Aravis silently drops the bytes that do not fit. Over USB a transfer must end with the payload.
+/// Returns the buffer size with which a frame larger than stated is detected. On a network it is one byte more than the
+/// payload, because Aravis silently drops the bytes that do not fit. Over USB it is the payload, because a transfer
+/// must end with the payload.
 [[nodiscard]] std::size_t buffer_bytes(const StreamFormat& format);
 
 /// Returns a buffer for a stream: without id, and zeroed so that the gaps of an incomplete frame contain no old data.

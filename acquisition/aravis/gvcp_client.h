@@ -39,8 +39,8 @@ struct GvcpReading {
   std::function<void(std::uint64_t bytes)> on_bytes = {};  ///< bytes read so far; called on the reading thread
 };
 
-/// Reads `bytes` of the device's memory, 512 at a time, from an address that is a multiple of 4. Errors: as above;
-/// `not_found`, with the progress, also if `patience` expires; `interrupted`.
+/// Reads `bytes` of the device's memory, 512 at a time, from an address that is a multiple of 4. Errors: as above, but
+/// `not_found` with the progress if `patience` expires; `interrupted`.
 [[nodiscard]] Result<std::string> gvcp_read_memory(const std::string& ipv4, std::uint32_t address, std::uint32_t bytes,
                                                    const GvcpReading& reading);
 

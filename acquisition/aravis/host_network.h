@@ -18,8 +18,8 @@ struct HostAddress {
 /// Returns the addresses of the interfaces that are up.
 [[nodiscard]] std::vector<HostAddress> host_addresses();
 
-/// Returns a warning if the camera at `ipv4` is in none of these networks: the camera then answers broadcasts, but no
-/// other packets reach it. Empty if a network contains it or `ipv4` is not an address.
+/// Returns a warning if none of these networks contains the address `ipv4` of the camera. The camera then answers
+/// broadcasts, but no other packets reach it. Empty if a network contains the address or `ipv4` is not an address.
 [[nodiscard]] std::string wrong_network(const std::string& ipv4, const std::vector<HostAddress>& hosts);
 
 /// Returns a warning if packets of this size, IP and UDP headers included, exceed the MTU of the camera's interface.

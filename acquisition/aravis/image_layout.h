@@ -30,9 +30,9 @@ enum class ChunkLayout {
 /// fill whole bytes: neighbouring rows then share a byte.
 [[nodiscard]] std::size_t row_bytes(const StatedImage& image);
 
-/// Returns the bytes of the image, padding included. Empty if their number differs from the stated number, because a
-/// row longer than stated would shift every later pixel. In a chunk layout the image is the first chunk, which may be
-/// padded to a multiple of eight bytes.
+/// Returns the bytes of the image, padding included. Empty if the number of bytes differs from the stated number,
+/// because a row longer than stated would shift every later pixel. In a chunk layout the image is the first chunk,
+/// which may be padded to a multiple of eight bytes.
 [[nodiscard]] std::optional<std::span<const std::uint8_t>> image_bytes(std::span<const std::uint8_t> received,
                                                                        const StatedImage& image, ChunkLayout chunks);
 

@@ -10,7 +10,7 @@ namespace todbench {
 enum class RampVerdict {
   in_order,  ///< counts rise along the rows
   swapped,   ///< counts rise along the rows if the bytes of every pixel are exchanged
-  no_ramp,   ///< neither: another picture, or too few pixels
+  no_ramp,   ///< neither: the picture is no ramp, or has too few pixels
 };
 
 /// Judges a test ramp. In a ramp nearly every pixel exceeds its left neighbour by the same small step, and the count

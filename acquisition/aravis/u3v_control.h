@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// USB3 Vision control messages needed before Aravis may open a camera: location, size and bytes of its description.
-// Source: GenCP 1.1, sections 4.2 to 4.4; USB3 Vision 1.0, section 4.
+// USB3 Vision control messages that are needed before Aravis opens a camera. They read location, size and bytes of the
+// camera's description. Source: GenCP 1.1, sections 4.2 to 4.4; USB3 Vision 1.0, section 4.
 #pragma once
 
 #include <chrono>
@@ -34,8 +34,8 @@ struct U3vDescriptionContent {
 };
 
 /// Reads the first description in the manifest of the camera with these names. Does not change the camera. Empty if
-/// there is no such camera or another program uses it. Errors: `not_found` (its tables are unreadable or contradictory;
-/// it is too slow), `interrupted`.
+/// there is no such camera or a different program uses it. Errors: `not_found` (the camera is too slow, or its tables
+/// are unreadable or contradictory), `interrupted`.
 [[nodiscard]] Result<std::optional<U3vDescriptionContent>> u3v_read_description(const UsbNames& names,
                                                                                 const U3vReading& reading);
 

@@ -3,9 +3,9 @@
 // end.
 //
 // Aravis emits "control-lost" on a thread of the device (heartbeat, USB events), and the destruction of the device
-// joins that thread. An emission holds a reference to the device. If this is the last reference, the thread joins
-// itself and GLib aborts the program. So the owner must hold the last reference: it waits until no emission can be
-// running.
+// joins that thread. An emission holds a reference to the device. If the emission holds the last reference, the thread
+// joins itself and GLib aborts the program. The owner must therefore hold the last reference, and waits until no
+// emission can be running.
 #pragma once
 
 #include <functional>

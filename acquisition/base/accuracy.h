@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numerical accuracy of results. It determines grid sizes, phases, wavelengths and numbers of draws.
+// Numerical accuracy of results. The accuracy determines grid sizes, phases, wavelengths and numbers of draws.
 #pragma once
 
 #include <string_view>
@@ -22,8 +22,8 @@ struct Accuracy {
   /// Upper limit of the draws per size: 40 MB of projected noise per size.
   static constexpr int max_noise_draws = 8000;
 
-  /// Derives all tolerances from the acuity tolerance: half of it for the standard error. The other tolerances are
-  /// scaled in proportion.
+  /// Derives all tolerances from the acuity tolerance. The standard error is half of the acuity tolerance; the other
+  /// values are scaled with it.
   [[nodiscard]] static Accuracy for_tolerance(double acuity_tolerance_percent);
   [[nodiscard]] static Accuracy draft();
   [[nodiscard]] static Accuracy normal();

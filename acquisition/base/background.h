@@ -9,10 +9,10 @@
 namespace todbench {
 
 /// Runs `work` on a separate thread. The program waits for this thread after main, before static objects are destroyed.
-/// The work must therefore end by itself within seconds. Any thread.
+/// The work must therefore end within seconds, because it receives no stop request. Any thread.
 void start_in_background(std::function<void()> work);
 
-/// Same for work that can be moved but not copied. The work is destroyed on its thread after it has run.
+/// Does the same for work that can be moved but not copied. The work is destroyed on its thread after it has run.
 template <typename Work>
 void finish_in_background(Work work) {
   start_in_background([held = std::make_shared<Work>(std::move(work))]() mutable {

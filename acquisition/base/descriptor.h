@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Owned POSIX file descriptors, and waits on them that end immediately on a stop request.
+// Owned POSIX file descriptors, and waits that end immediately on a stop request.
 #pragma once
 
 #include <chrono>

@@ -31,7 +31,7 @@ struct FisherF {
   double numerator_freedom, denominator_freedom;
 };
 
-/// Selects the upper tail of a distribution. It avoids the cancellation in 1 - p.
+/// Selects the upper tail of a distribution, to avoid the cancellation in 1 - p.
 template <class Law>
 struct Complement {
   Law law;
@@ -43,8 +43,8 @@ template <class Law>
   return {law, value};
 }
 
-/// Return distribution function, quantile and density of the four distributions above. They throw std::domain_error, as
-/// Boost.Math does, if degrees of freedom are not positive or a probability is outside 0..1.
+/// Return distribution function, quantile and density of the four distributions above. The functions throw
+/// std::domain_error, as Boost.Math does, if degrees of freedom are not positive or a probability is outside 0..1.
 template <class Law>
 [[nodiscard]] double cdf(const Law& law, double x);
 template <class Law>

@@ -14,14 +14,14 @@
 namespace todbench {
 
 /// Descriptors that the child receives. -1: the child inherits the descriptor of this program (`at_three`: none). The
-/// caller closes its own copies.
+/// caller closes the copies in this program.
 struct ChildStreams {
   int input = -1, output = -1, error = -1;
   int at_three = -1;  ///< becomes descriptor 3
 };
 
-/// Process group of a child: `ours` receives Ctrl-C from the terminal of this program; `own` can be ended together with
-/// all children of the child.
+/// Process group of a child: a child in `ours` receives Ctrl-C from the terminal of this program; a child in `own` can
+/// be ended together with all its children.
 enum class ChildGroup { ours, own };
 
 /// Starts a program by name or path, with all signals unblocked and SIGPIPE not ignored. Errors: `not_found` with the

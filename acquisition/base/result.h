@@ -25,15 +25,15 @@ enum class ErrorCode {
   internal,          ///< a bug of the program
 };
 
-/// The subject of a failure. Forms and command lines can replace its name by the name that they show.
+/// The subject of a failure. Forms and command lines can replace its name by the name that the user sees.
 struct ErrorKey {
   std::string name;    ///< a key of a description with its section ("target.delta_t_k"), an option ("--seed") or a file
   std::string reason;  ///< the fault without the name: "expected a number above 0, found 0"
   bool operator==(const ErrorKey&) const = default;
 };
 
-/// A failure. Each caller adds its action in front: "opening gige:X: setting PixelFormat=Mono16: access denied". The
-/// message is for people; callers branch on `code` and read the subject from `key`.
+/// A failure. Each caller adds its action before the message: "opening gige:X: setting PixelFormat=Mono16: access
+/// denied". The message is for people; callers branch on `code` and read the subject from `key`.
 struct Error {
   ErrorCode code = ErrorCode::internal;
   std::string message;
@@ -55,7 +55,7 @@ using Result = tl::expected<T, Error>;
   return tl::unexpected<Error>(Error{code, std::move(message), ErrorKey{std::move(name), std::move(reason)}});
 }
 
-/// Returns the same error with the caller's action in front. The subject stays the same.
+/// Returns the same error with the caller's action before the message. The subject does not change.
 [[nodiscard]] inline Error with_context(std::string_view doing, const Error& cause) {
   return {cause.code, std::string(doing) + ": " + cause.message, cause.key};
 }
@@ -73,7 +73,7 @@ using Result = tl::expected<T, Error>;
   return {cause.code, std::move(message), ErrorKey{std::move(name), cause.key->reason}};
 }
 
-/// Returns the same error under another code, for a caller for which the error has another meaning.
+/// Returns the same error with a different code, for a caller that interprets the error differently.
 [[nodiscard]] inline Error with_code(ErrorCode code, Error cause) {
   cause.code = code;
   return cause;

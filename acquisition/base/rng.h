@@ -11,7 +11,7 @@
 namespace todbench {
 
 /// One independent sequence of random numbers. A value type without state: the position is an argument. Thread-safe.
-/// Streams have names, so removing one consumer never shifts the numbers of another.
+/// Streams have names, so removing one consumer never changes the numbers of the others.
 class RandomStream {
  public:
   RandomStream(std::uint64_t seed, std::uint64_t stream) : seed_(seed), stream_(stream) {}

@@ -31,9 +31,9 @@ struct NewFile {
 /// Opens or creates a regular file for appending. A link is refused. Errors as make_empty_file().
 [[nodiscard]] Result<int> open_to_append(const std::filesystem::path& file);
 
-/// Opens a regular file for reading, without waiting. Links are followed. Names below /dev and /proc may also lead to a
-/// pipe or a device ("/dev/stdin"), on which the caller may have to wait. Error: `io` with path and reason. The caller
-/// closes the descriptor.
+/// Opens a regular file for reading, without waiting. Links are followed. A name below /dev or /proc may also lead to a
+/// pipe or a device ("/dev/stdin"); reading it may block. Error: `io` with path and reason. The caller closes the
+/// descriptor.
 [[nodiscard]] Result<int> open_to_read(const std::filesystem::path& file);
 
 /// Returns the reason why a path is not a regular file: "no such file", "it is a folder" or "it is a pipe, a socket or

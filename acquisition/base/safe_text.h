@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes text from cameras, instruments, files and networks safe to display: it cannot move the cursor, clear the screen
-// or change the direction of writing.
+// Makes text from cameras, instruments, files and networks safe to display. The text then cannot move the cursor, clear
+// the screen or change the direction of writing.
 #pragma once
 
 #include <cstddef>

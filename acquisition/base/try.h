@@ -13,8 +13,8 @@
   if (!(result)) return tl::unexpected<::todbench::Error>(std::move(result).error()); \
   target = *std::move(result)
 
-/// Evaluates an expression of type Result<T>. On an error the function returns it; otherwise its value initializes or
-/// is assigned to `target`:
+/// Evaluates an expression of type Result<T>. On an error, the surrounding function returns this error. Otherwise the
+/// value initializes `target` or is assigned to it:
 ///   TODBENCH_TRY(const auto text, read_text_file(file));
 ///   TODBENCH_TRY(session.plan, load_plan(file));
 /// Expands to three statements: do not use it as the body of an `if` without braces, and write at most one on a line.
@@ -26,7 +26,7 @@
     if (!(result)) return tl::unexpected<::todbench::Error>(std::move(result).error()); \
   } while (false)
 
-/// Evaluates an expression of type Result<void>, or one whose value is not needed. On an error the function returns it.
-/// One statement:
+/// Evaluates an expression of type Result<void>, or one whose value is not needed. On an error, the surrounding
+/// function returns this error. One statement:
 ///   TODBENCH_TRY_VOID(validate(plan));
 #define TODBENCH_TRY_VOID(...) TODBENCH_TRY_VOID_(TODBENCH_TRY_NAME_(__LINE__), __VA_ARGS__)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Determines the byte order of 16-bit counts from the picture itself.
+// Determines the byte order of 16-bit counts from the picture.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ enum class ByteOrderVerdict {
 
 /// Result of the test. V(x) is the mean absolute difference of horizontal neighbours in a picture x. Counts of a
 /// thermal picture change little from pixel to pixel: their high byte is smooth, their low byte is not. Swapping makes
-/// the low byte the high byte, and V increases: for a random low byte to 256 * 256 / 3 = 21845 counts.
+/// the low byte the high byte, so V increases. With a random low byte, V increases to 256 * 256 / 3 = 21845 counts.
 struct ByteOrderEvidence {
   /// ln(V(x) / V(x with swapped bytes)); antisymmetric under swapping. Negative: the order is right. Zero if the
   /// verdict is undecided because a picture is flat.
@@ -31,8 +31,8 @@ struct ByteOrderEvidence {
 
 /// Options of byte_order_evidence().
 struct ByteOrderOptions {
-  /// A |log_ratio| below this is undecided. Temporal or spatial noise of 16-bit counts with standard deviation sigma
-  /// has V = 2 sigma / sqrt(pi), so the default allows for noise up to sigma = 7000 counts.
+  /// Limit of |log_ratio| below which the order is undecided. Temporal or spatial noise of 16-bit counts with standard
+  /// deviation sigma has V = 2 sigma / sqrt(pi), so the default allows for noise up to sigma = 7000 counts.
   double least_log_ratio = 1;
 };
 
@@ -41,14 +41,14 @@ struct ByteOrderOptions {
 /// smooth.
 [[nodiscard]] ByteOrderEvidence byte_order_evidence(const cv::Mat1w& counts, const ByteOrderOptions& options);
 
-/// Byte order of the frames of a recording, taken together. One thread at a time.
+/// Byte order of all frames of a recording. One thread at a time.
 class ByteOrderWatch {
  public:
-  /// Adds a frame. `significant_bits` of a count; counts of 8 or fewer bits have no byte order.
+  /// Adds a frame. `significant_bits`: number of used bits of a count; counts of 8 or fewer bits have no byte order.
   void see(const cv::Mat1w& counts, int significant_bits);
   /// Returns the byte order of the frames; `as_stated` for counts of one byte, and before the first frame.
   [[nodiscard]] ByteOrderVerdict verdict() const;
-  /// Returns a sentence if one byte is zero in all examined pixels, so that no frame reveals the order; otherwise
+  /// Returns a sentence if one byte is zero in all examined pixels, because the byte order is then unknown; otherwise
   /// empty.
   [[nodiscard]] std::string note() const;
 

@@ -16,15 +16,15 @@ struct CameraEntry {
   std::string id;  ///< "gige:VENDOR-SERIAL", "sim:sc2000", "file:PATH"
   std::string vendor, model, serial, transport;
   std::string address;  ///< present location; never part of the identity
-  std::string note{};   ///< one sentence if the camera cannot be opened in this state or cannot be identified again;
-                        ///< otherwise empty
+  std::string note{};   ///< one sentence if the camera cannot be opened in its present state or cannot be identified
+                        ///< again; otherwise empty
 };
 
 /// A back end for one family of cameras. To add one, implement list() and open().
 class CameraBackend {
  public:
   virtual ~CameraBackend() = default;
-  /// Returns the prefix of its ids, without the colon: "gige".
+  /// Returns the prefix of the ids of this back end, without the colon: "gige".
   [[nodiscard]] virtual std::string scheme() const = 0;
   /// Lists the cameras that can be opened now. Takes up to two seconds on a network.
   [[nodiscard]] virtual Result<std::vector<CameraEntry>> list() = 0;

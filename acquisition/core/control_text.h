@@ -18,7 +18,7 @@ namespace todbench {
 [[nodiscard]] std::optional<cv::Size> frame_size_of(std::string_view text);
 [[nodiscard]] std::string frame_size_text(cv::Size size);
 
-/// Features that a source offers in addition to those of its camera: the frame size that the camera is expected to send
+/// Features that a source offers in addition to those of the camera: the frame size that the camera is expected to send
 /// (frame_size_text()), and the name of the camera's command for a non-uniformity correction.
 inline constexpr const char* frame_size_feature = "FrameSize";
 inline constexpr const char* nuc_command_feature = "NonuniformityCommand";

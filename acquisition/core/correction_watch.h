@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Detects unreported non-uniformity corrections of a camera in its pictures.
+// Detects, in the pictures of a camera, non-uniformity corrections that the camera does not report.
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,8 @@ struct CorrectionWatchOptions {
   /// A picture is without structure if its range (1st to 99th percentile) is below this share of the largest observed
   /// range.
   double shutter_range_ratio = 0.5;
-  /// Number of comparisons that are kept for the median difference, and that are required before a sign is reported.
+  /// Number of comparisons from which the median difference is computed. No sign is reported before this number is
+  /// reached.
   int history = 15;
 };
 
@@ -47,7 +48,7 @@ class CorrectionWatch {
   explicit CorrectionWatch(CorrectionWatchOptions options) : options_(options) {}
 
   /// Returns the evidence of a correction in this frame, if any. The frame must be complete and show the same scene as
-  /// the one before it.
+  /// the preceding frame.
   [[nodiscard]] std::optional<CorrectionSign> see(const Frame& frame);
   /// Does the same for a frame that is bit-identical to the preceding frame.
   [[nodiscard]] std::optional<CorrectionSign> see_frozen();
@@ -58,7 +59,7 @@ class CorrectionWatch {
   void remember(double spread, double range);
 
   CorrectionWatchOptions options_;
-  std::vector<std::uint16_t> previous_;  ///< sampled pixels of the frame before; empty: no frame
+  std::vector<std::uint16_t> previous_;  ///< sampled sampled pixels of the preceding frame; empty: no frame
   std::deque<double> differences_;       ///< trimmed mean differences of successive frames
   std::optional<double> usual_range_;    ///< largest range observed in this scene
   int equal_frames_ = 1;

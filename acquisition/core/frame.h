@@ -14,8 +14,8 @@ namespace todbench {
 /// Integrity of a frame's pixels as reported by the transport.
 enum class FrameStatus {
   complete,
-  incomplete,  ///< data missing or late; never measured
-  wrong_size,  ///< geometry or payload differs from the negotiated one
+  incomplete,  ///< data are missing or late; the frame is never measured
+  wrong_size,  ///< geometry or payload differs from the negotiated values
 };
 
 [[nodiscard]] std::string_view to_string(FrameStatus status);
@@ -41,15 +41,15 @@ struct JudgedPicture;
 
 /// One exposed image. Immutable after it is handed out: pixels are shared, copying is cheap, any thread may read.
 struct Frame {
-  cv::Mat1w counts;                 ///< as the camera sent them, row by row from the top
+  cv::Mat1w counts;                 ///< counts as sent by the camera, row by row from the top
   std::uint64_t sequence = 0;       ///< number of the exposure, unwrapped; a gap means lost frames
   std::int64_t device_time_ns = 0;  ///< the camera's clock, by default at the start of transfer; 0: none
   std::int64_t host_time_ns = 0;    ///< CLOCK_MONOTONIC when the complete frame reached the program
   FrameStatus status = FrameStatus::complete;
   Numbering numbering = Numbering::counted;
-  CorrectionState correction = CorrectionState::unknown;  ///< while this frame was exposed
+  CorrectionState correction = CorrectionState::unknown;  ///< state while this frame was exposed
   double since_correction_s = -1;                         ///< as reported by the camera; negative: not reported
-  int significant_bits = 16;                              ///< full scale is 2^significant_bits - 1 counts
+  int significant_bits = 16;                              ///< the full scale is 2^significant_bits - 1 counts
   std::shared_ptr<const RadiometricScale> scale;          ///< never null
   std::shared_ptr<const JudgedPicture> judged{};  ///< picture that is judged instead of the counts; null: the counts
                                                   ///< are judged

@@ -24,7 +24,8 @@ struct FrameStamp {
   std::optional<std::uint64_t> number;  ///< empty: lost together with its packet
   std::int64_t device_time_ns = 0;      ///< time on the clock of the camera or driver; 0: none
   std::int64_t host_time_ns = 0;        ///< CLOCK_MONOTONIC at arrival
-  bool may_pause = false;               ///< the camera corrects itself: it may be silent without losing exposures
+  bool may_pause = false;               ///< a correction is running: the camera may send no frames without losing
+                                        ///< exposures
   bool after_unread = false;  ///< other frames were lost since the last frame because every buffer of the program was
                               ///< full
 };
@@ -38,10 +39,10 @@ struct FramePlace {
 
 /// Converts frame numbers to Frame::sequence: 0 for the first frame of a stream, gaps for lost exposures.
 ///
-/// Numbers are trusted unless the clocks contradict them. A number that goes back, or ahead by far more than the
-/// elapsed time, indicates a restart. Consecutive numbers over several frame periods hide a loss (Aravis silently drops
-/// up to a hundred frames whose ids it has already received). The gap is then estimated from the camera's clock if it
-/// agrees with the host's clock, otherwise from the host's clock.
+/// Numbers are used unless the clocks contradict them. A number that decreases, or increases by far more than the
+/// elapsed time, indicates a restart. If numbers are consecutive although several frame periods have passed, frames
+/// were lost (Aravis silently drops up to a hundred frames whose ids it has already received). The gap is then
+/// estimated from the camera's clock if it agrees with the host's clock, otherwise from the host's clock.
 ///
 /// Frames must be given in the order in which the transport completed them. One thread at a time.
 class FrameSequence {
@@ -52,8 +53,8 @@ class FrameSequence {
   /// Returns the position of a frame in the sequence. A frame without a number gets the position after the last frame;
   /// its true position is the same or later. 16-bit numbers are unwrapped over gaps of up to 32767 frames (ten minutes
   /// at 50 Hz). A frame that is older according to its number and the camera's clock gets its older position. A counted
-  /// gap before a frame with `after_unread` is `unread`. A gap before the following frame is `unread` too, because a
-  /// frame may have been in transfer when the buffers were full.
+  /// gap before a frame with `after_unread` is `unread`. A gap before the next frame is also `unread`, because a frame
+  /// may have been in transfer when the buffers were full.
   [[nodiscard]] FramePlace next(const FrameStamp& as_told);
 
  private:
@@ -66,8 +67,9 @@ class FrameSequence {
   struct Elapsed {
     std::optional<double> device, host;
     double period_ns = 0;  ///< frame period on the host's clock
-    /// Returns the number of periods from which to estimate a gap after a restart. It is taken from the camera's clock,
-    /// unless the host's clock counts far more periods: then the camera's clock restarted too.
+    /// Returns the number of periods from which to estimate a gap after a restart. The number is that of the camera's
+    /// clock. If the host's clock counts far more periods, the camera's clock has also restarted, and the number is
+    /// that of the host's clock.
     [[nodiscard]] std::optional<double> best() const;
   };
   /// Frame period on the camera's clock: the median of the observed periods.
@@ -84,8 +86,8 @@ class FrameSequence {
     double stated_ns_;
     std::deque<double> seen_ns_;
   };
-  /// Frame period on the host's clock, on which single frames arrive early or late. It is the stated period, unless the
-  /// mean of the observed periods contradicts it; then it is this mean.
+  /// Frame period on the host's clock, on which single frames arrive early or late. It is the stated period, or the
+  /// mean of the observed periods if the mean contradicts the stated period.
   class HostPeriod {
    public:
     explicit HostPeriod(double stated_ns) : stated_ns_(stated_ns) {}
@@ -101,11 +103,12 @@ class FrameSequence {
     double stated_ns_;
     std::deque<Seen> seen_;
   };
-  /// A silence on the host's clock. It is not a loss if the frames after it arrive faster than they are exposed.
+  /// Interval without frames on the host's clock. No frame was lost if the frames after the interval arrive faster than
+  /// the frame rate.
   struct Silence {
-    double missing = 0;  ///< periods
+    double missing = 0;  ///< missing frames, in frame periods
     std::int64_t host_time_ns = 0;
-    int frames = 0;  ///< frames since the silence
+    int frames = 0;  ///< number of frames since this interval
   };
 
   [[nodiscard]] FramePlace place_of(const FrameStamp& as_told);
@@ -127,7 +130,8 @@ class FrameSequence {
   bool after_unread_ = false;  ///< FrameStamp::after_unread of the last frame, if no gap preceded it
   std::optional<Anchor> anchor_;
   std::uint64_t last_ = 0;
-  std::optional<double> last_gap_;  ///< gap in frame periods of the device clock, if the last frame concealed one
+  std::optional<double> last_gap_;  ///< gap before the last frame, in frame periods of the device clock, if the frame
+                                    ///< numbers do not show it
   std::optional<Silence> silence_;
 };
 

@@ -27,10 +27,10 @@ class InputGate {
   /// Returns true if the frame is a valid exposure: a new exposure or a repetition of the previous exposure.
   [[nodiscard]] bool takes(const Frame& frame);
   /// Returns the result; call it after the last frame. Errors: `integrity` if more than 1 % of the frames are damaged.
-  /// A valid recording passes: less than one frame in 10^6 appears byte-swapped, rearranged or equal to an older one by
-  /// chance.
+  /// A valid recording passes: by chance, less than one frame in 10^6 appears byte-swapped, rearranged or equal to an
+  /// older frame.
   [[nodiscard]] Result<void> verdict() const;
-  /// Returns a sentence about the frames that were left out of a recording that passes; empty if there are none.
+  /// Returns a sentence about the excluded frames of a recording that passes; empty if no frame was excluded.
   [[nodiscard]] std::string note() const;
   /// Returns a sentence if the camera sends each exposure several times; otherwise empty.
   [[nodiscard]] std::string cadence() const { return cadence_.sentence(); }

@@ -17,7 +17,7 @@ namespace todbench {
 enum class Rejection {
   incomplete,                ///< reported by the transport
   wrong_size,                ///< differs from the geometry of the source
-  repeated,                  ///< the last sequence number again, or the same pixels as an earlier recent frame
+  repeated,                  ///< the same sequence number as the last frame, or the same pixels as a recent frame
   out_of_order,              ///< the sequence number is below the last sequence number
   gapped,                    ///< exposures are missing directly before this frame
   frozen,                    ///< bit-identical to the preceding frame (shutter, stuck transfer)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The picture that is judged instead of a frame, after processing stages after the camera.
+// Output of processing stages after the camera. This picture is judged instead of the frame.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// The output of the stages for a frame, on its scale. It is judged instead of the counts.
+/// The output of the stages for a frame, with its own scale. It is judged instead of the counts of the frame.
 struct JudgedPicture {
   cv::Mat1w counts;
   int samples_per_pixel = 1;      ///< along each axis

@@ -8,18 +8,19 @@
 
 namespace todbench {
 
-/// Determines how often a camera sends each exposure, from frames that equal their predecessor bit for bit. With noise
-/// no two exposures are equal, so a rhythm over 8 exposures does not arise by chance. A camera that is stuck has no
-/// rhythm. One thread at a time.
+/// Determines how often a camera sends each exposure, from frames that equal the preceding frame bit for bit. Because
+/// of noise, no two exposures are equal. A regular pattern of repetitions over 8 exposures therefore does not arise by
+/// chance. A camera that is stuck shows no regular pattern. One thread at a time.
 class RepeatCadence {
  public:
   void see(bool equals_the_last);
   /// Returns the frames per exposure; 1 while the number is unknown.
   [[nodiscard]] int times() const { return times_; }
-  /// Returns whether the last frame fits the rhythm: its exposure was not sent more often than other exposures.
+  /// Returns whether the last frame agrees with this pattern: its exposure was not sent more often than other
+  /// exposures.
   [[nodiscard]] bool in_rhythm() const { return times_ > 1 && run_ <= times_; }
-  /// Returns the number of frames in the rhythm that equal their predecessor, including the frames from which the
-  /// rhythm was determined.
+  /// Returns the number of frames in this pattern that equal the preceding frame, including the frames from which the
+  /// pattern was determined.
   [[nodiscard]] std::uint64_t repeats() const { return repeats_; }
   /// Returns one sentence for the user; empty if each exposure is sent once.
   [[nodiscard]] std::string sentence() const;

@@ -15,32 +15,34 @@
 
 namespace todbench {
 
-/// Limits far above all published descriptions. In 92 of them, the longest chain has 19 references, the costliest value
-/// needs 442 evaluations, the longest register has 32 KiB, and the longest formula has 2043 characters.
+/// Limits far above the values of all published descriptions. In 92 published descriptions, the longest chain has 19
+/// references, the costliest value needs 442 evaluations, the longest register has 32 KiB, and the longest formula has
+/// 2043 characters.
 inline constexpr std::size_t longest_reference_chain = 100;
 inline constexpr std::uint64_t most_evaluations = 10'000;
 inline constexpr std::int64_t longest_register_bytes = 64 * 1024;
 inline constexpr std::size_t longest_formula = 16 * 1024;
 
-/// A parsed description with its faults. A value; any thread.
+/// A parsed description with its faults. A value type; any thread.
 class Description {
  public:
   explicit Description(std::string_view xml);
 
   /// Returns the reasons why the description must not be evaluated at all; empty: it is safe.
   [[nodiscard]] const std::vector<DescriptionFault>& faults() const { return faults_; }
-  /// Returns the reasons why this feature must not be evaluated: it depends on a node that does not exist (and would
-  /// count as 0) or on a division that can raise SIGFPE. Empty for a feature that does not exist.
+  /// Returns the reasons why this feature must not be evaluated. A feature must not depend on a node that does not
+  /// exist, because the client would use the value 0, or on a division that can raise SIGFPE. Empty for a feature that
+  /// does not exist.
   [[nodiscard]] std::vector<DescriptionFault> faults_of(const std::string& feature) const;
-  /// Returns the nodes that contain lengths of registers on which this feature depends, if only the camera stores these
-  /// lengths. Each node follows the nodes on which it depends. Check that the values are 1 ... 64 KiB before evaluating
-  /// the feature.
+  /// Returns the nodes with the lengths of registers on which this feature depends, if only the camera stores these
+  /// lengths. In the list, each node follows the nodes on which it depends. Check that the values are 1 ... 64 KiB
+  /// before evaluating the feature.
   [[nodiscard]] std::vector<std::string> lengths_of(const std::string& feature) const;
 
  private:
   DescriptionNodes nodes_;
   std::vector<DescriptionFault> faults_;
-  std::vector<bool> trapping_;                  ///< by node: whether its evaluation can raise SIGFPE
+  std::vector<bool> trapping_;                  ///< for each node, whether its evaluation can raise SIGFPE
   std::vector<std::string> unbounded_lengths_;  ///< sorted
 };
 

@@ -6,15 +6,15 @@
 
 namespace todbench {
 
-/// Reason why a description or one of its features is withheld from the client that would evaluate it.
+/// Reason why the client must not evaluate a description or a feature of it.
 enum class DescriptionFaultKind {
   not_xml,          ///< not well-formed, or no RegisterDescription
   entities,         ///< has a document type, which may declare entities
   too_large,        ///< more elements or text than any camera requires
-  two_of_one_name,  ///< two nodes of the same name, so that references to it are ambiguous
+  two_of_one_name,  ///< two nodes of the same name, which makes references ambiguous
   cycle,            ///< a circular reference
   too_deep,         ///< a chain of references longer than any camera requires
-  too_expensive,    ///< a value with more evaluations than any camera requires
+  too_expensive,    ///< a value that needs more evaluations than any camera requires
   register_length,  ///< a register whose length is zero, negative or excessive
   formula,          ///< longer than any camera requires
   division,         ///< an integer division that can raise SIGFPE

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Parses the XML text of a GenICam description into nodes with their references. Does not judge their values.
 //
-// Uses the parser and the mode of Aravis (libxml2, SAX 1), so that both read the same elements.
+// Uses the parser and the mode of Aravis (libxml2, SAX 1), because both must read the same elements.
 #pragma once
 
 #include <cstddef>
@@ -40,11 +40,11 @@ enum class ReferenceKind {
   condition,  ///< pIsImplemented, pIsAvailable, pIsLocked
 };
 
-/// A reference to another node.
+/// A reference to a node.
 struct NodeReference {
   ReferenceKind kind = ReferenceKind::value;
   std::string target;  ///< name of a node, as in the text
-  std::string name;    ///< of a pVariable: its name in formulas
+  std::string name;    ///< name in formulas; only for a pVariable
 };
 
 /// A text with its name.

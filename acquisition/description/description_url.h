@@ -23,13 +23,13 @@ struct DescriptionUrl {
   Place place = Place::camera;
   std::uint32_t address = 0;
   std::uint32_t bytes = 0;
-  std::string path;     ///< path of the file; in the camera only the file name, whose extension shows whether the
+  std::string path;     ///< path of the file; for the camera only the file name, whose extension shows whether the
                         ///< content is zipped
   bool zipped = false;  ///< always false for files
 };
 
 /// Parses a URL ("Local:camera.xml;5C000;8A3", numbers hexadecimal; "File:///usr/share/camera.xml"). Error: `not_found`
-/// with the reason if a number exceeds its limit, the URL is unreadable, or it refers to another location.
+/// with the reason if a number exceeds its limit, the URL is unreadable, or it refers to neither the camera nor a file.
 [[nodiscard]] Result<DescriptionUrl> parse_description_url(std::string_view url);
 
 /// Returns the text of a description file. Error: `not_found` if it is not a regular file (a device, a pipe, a kernel

@@ -122,10 +122,10 @@ struct RowSection {
   int first = 0, count = 0;
 };
 
-/// Returns the bytes of a section of a frame of two-byte pixels, so that the section can be decoded separately.
-/// Example: cameras of the InfiRay class send 256 x 384 YUYV whose rows 192 ... 383 are 256 x 192 temperatures of 16
-/// bits, little-endian. Telemetry rows of a Lepton have 16 bits like its picture. `row_bytes` as in PixelLayout, but
-/// not 0. Error: `invalid_input` if the section exceeds the bytes.
+/// Returns the bytes of a section of a frame with two-byte pixels, for separate decoding. For example, cameras of the
+/// InfiRay class send frames of 256 x 384 YUYV, in which rows 192 ... 383 contain 256 x 192 temperatures of 16 bits,
+/// little-endian. Telemetry rows of a Lepton have 16 bits, like its picture. `row_bytes` as in PixelLayout, but not 0.
+/// Error: `invalid_input` if the section exceeds the bytes.
 [[nodiscard]] Result<std::span<const std::uint8_t>> section_bytes(std::span<const std::uint8_t> frame,
                                                                   std::size_t row_bytes, RowSection section);
 

@@ -11,9 +11,9 @@ namespace todbench {
 /// Kinds of files that are offered as recordings.
 enum class FileKind {
   frame_stream,  ///< a recording of the bench
-  flir,          ///< FFF records or a JPEG picture, which may contain one
+  flir,          ///< FFF records, or a JPEG picture that may contain an FFF record
   tiff,
-  foreign,  ///< a known format that is not read as a recording
+  foreign,  ///< a known format that cannot be opened as a recording
   unknown,  ///< no known first bytes: raw counts, or a damaged file
 };
 

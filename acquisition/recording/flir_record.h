@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// FFF records of FLIR: each contains an index, the constants of the camera and one raw frame. SEQ, CSQ and FFF files
-// and radiometric JPEG pictures consist of such records. Layout as documented by the ExifTool project (FLIR tag
-// tables).
+// FFF records of FLIR. Each record contains an index, the constants of the camera and one raw frame. SEQ, CSQ and FFF
+// files consist of these records; a radiometric JPEG picture contains one. Layout as documented by the ExifTool project
+// (FLIR tag tables).
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,8 @@ class FlirBytes {
   explicit FlirBytes(std::string memory);
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Reads `length` bytes from `offset`, or fewer at the end. Returns fewer also if the file was truncated meanwhile.
+  /// Reads `length` bytes from `offset`. Returns fewer bytes at the end, or if the file was truncated after it was
+  /// opened.
   [[nodiscard]] std::string read(std::uint64_t offset, std::size_t length) const;
 
  private:
@@ -46,8 +47,8 @@ struct FlirPlanck {
 /// the constants do not define a scale.
 [[nodiscard]] Result<RadiometricScale> planck_scale(const FlirPlanck& planck);
 
-/// Settings of the operator about the scene. They are kept only for provenance: the scale of the frames is radiance
-/// temperature (emissivity 1, no atmosphere), as for a black body in front of the lens.
+/// Settings of the operator about the scene. The settings are kept only for provenance. The scale of the frames is
+/// radiance temperature (emissivity 1, no atmosphere), as for a black body in front of the lens.
 struct FlirObjectParameters {
   double emissivity = 1;
   double distance_m = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files of FLIR cameras as recordings: SEQ, CSQ and FFF (a sequence of FFF records) and radiometric JPEG. Verified with
-// files of an SC660 and a T1030sc and with an independent reader (docs/validation/cameras.md).
+// Opens files of FLIR cameras as recordings: SEQ, CSQ and FFF (a sequence of FFF records) and radiometric JPEG.
+// Verified with files of an SC660 and a T1030sc and with an independent reader (docs/validation/cameras.md).
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Returns whether a file begins like a FLIR record or a JPEG picture.
+/// Returns whether the first bytes are those of a FLIR record or a JPEG picture.
 [[nodiscard]] bool is_flir_file(std::string_view start);
 
 /// Opens the file as a recording. The scale is the scale of the first frame, in radiance temperature. The settings

@@ -35,9 +35,9 @@ struct Reading {
 };
 
 /// Appends to a recording. Every record is complete, has checksums, and is passed to the operating system before the
-/// call returns. A crash of the program therefore loses no record; a crash of the machine loses only the records that
-/// the system had not yet written. Move-only; several threads may append. Errors: `io` with the path. After a failed
-/// write (full disk, deleted file) the partial record is truncated and later records are refused, so that a recording
+/// call returns. If the program crashes, no record is lost. If the machine crashes, only the records that the system
+/// had not yet written are lost. Move-only; several threads may append. Errors: `io` with the path. After a failed
+/// write (full disk, deleted file) the partial record is removed and later records are refused. A recording therefore
 /// has no gaps.
 class FrameStreamWriter {
  public:
@@ -73,15 +73,15 @@ class FrameStreamWriter {
   std::unique_ptr<std::mutex> appending_ = std::make_unique<std::mutex>();  ///< guards all other members
 };
 
-/// An opened recording. Readings and failures are in order. The index of a failure is the index of the next frame.
+/// An opened recording. Readings and failures are in order. The index of a failure is that of the next frame.
 struct FrameStream {
   StreamHeader header;
   Recording recording;
   std::vector<Reading> readings;
-  std::uint64_t torn_bytes = 0;  ///< after the last complete record: remainder of a record that a crash interrupted
+  std::uint64_t torn_bytes = 0;  ///< bytes after the last complete record, from a record that a crash interrupted
 };
 
-/// Returns whether a file begins like a recording of the bench.
+/// Returns whether the first bytes of a file are those of a recording of the bench.
 [[nodiscard]] bool is_frame_stream(const std::filesystem::path& file);
 
 /// Finds all records; pixels are read on demand. A frame with a wrong checksum is returned as incomplete. Errors: `io`,

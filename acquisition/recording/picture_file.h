@@ -23,7 +23,7 @@ struct PictureFile {
 /// or of 32 or 64 bits floating point; rows or strips, any byte order and lossless compression. The picture is rotated
 /// as its tag Orientation requires, and 0 is the darkest value. .npy: an array of two dimensions; integers of 8 to 64
 /// bits or floating point of 32 or 64 bits; both byte orders; C and Fortran order. Values may be NaN. Errors:
-/// `invalid_input` with the path (neither format, or unreadable); `integrity` if the two bytes of 16-bit samples are
+/// `invalid_input` with the path (not TIFF or .npy, or unreadable); `integrity` if the two bytes of 16-bit samples are
 /// exchanged.
 [[nodiscard]] Result<PictureFile> read_picture(const std::filesystem::path& path);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests whether the first frame agrees with the sign, bits and unit that the user stated because the file does not
-// contain them.
+// Tests whether the first frame agrees with the sign, bits and unit that the user stated for a file without this
+// information.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -24,9 +24,9 @@ struct KnownValues {
   std::optional<ValueUnit> unit{};
 };
 
-/// Returns whether the picture is smooth only if its highest bit is inverted. Then signed values were read as unsigned,
-/// or the reverse. The values must cross the wrap-around without a wide gap, so bimodal and clipped scenes do not
-/// qualify. Returns false for pictures of fewer than 1000 pixels.
+/// Returns whether the picture is smooth only if its highest bit is inverted. In this case, signed values were read as
+/// unsigned, or the reverse. The values must cross the wrap-around without a wide gap, so the result is false for
+/// bimodal and clipped scenes. Returns false for pictures of fewer than 1000 pixels.
 [[nodiscard]] bool looks_wrapped(const cv::Mat1w& counts);
 
 /// Adds warnings to the recording if temperatures are outside 150 to 2000 K or if the sign of the values looks wrong.

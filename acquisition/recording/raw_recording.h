@@ -10,7 +10,7 @@ namespace todbench {
 
 /// Byte order of the counts.
 enum class RawByteOrder { little, big };
-/// Whether the counts have a sign. 32768 is added to signed values.
+/// Sign of the counts. 32768 is added to signed values.
 enum class RawSign { without, with };
 
 /// Format of a raw file, which has no header.

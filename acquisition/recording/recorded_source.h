@@ -25,7 +25,7 @@ struct RecordedFrame {
   std::optional<int> significant_bits;  ///< empty: as in the recording
 };
 
-/// The call that failed on the recorded camera.
+/// The call of the recorded camera that failed.
 enum class FailedCall { next, correct_nonuniformity };
 
 /// A recorded failure of the camera. The failure replaces a frame or a correction.
@@ -35,8 +35,8 @@ struct RecordedFailure {
   FailedCall call = FailedCall::next;
 };
 
-/// An opened recording: camera, number of frames, and a function that reads one frame. next() calls `read` on its own
-/// thread with an index below `frame_count`. `read` owns all data that it uses.
+/// An opened recording: camera, number of frames, and a function that reads one frame. next() calls `read`, on the
+/// thread of next(), with an index below `frame_count`. `read` owns all data that it uses.
 struct Recording {
   SourceInfo info;
   std::uint64_t frame_count = 0;
@@ -51,8 +51,8 @@ enum class Playback {
 };
 
 /// Returns a source that serves the frames in order, as fast as they are requested. The sequence begins at 0 unless the
-/// recording states otherwise. start() after stop() begins at the first frame again. The end of the recording is
-/// reported as `disconnected`, and so is a frame that has become unreadable. Features: the entries of info().settings,
+/// recording states otherwise. start() after stop() begins at the first frame again. The end of the recording and a
+/// frame that has become unreadable are reported as `disconnected`. Features: the entries of info().settings,
 /// read-only.
 [[nodiscard]] std::unique_ptr<FrameSource> recorded_source(Recording recording, Playback playback = Playback::camera);
 

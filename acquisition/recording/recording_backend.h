@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Recordings by id, like cameras.
+// Opens recordings by id, like cameras.
 #pragma once
 
 #include <filesystem>

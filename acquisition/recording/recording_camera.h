@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A camera whose frames are recorded as they pass through.
+// A camera that appends all delivered frames to a recording.
 #pragma once
 
 #include <memory>
@@ -9,8 +9,8 @@
 namespace todbench {
 
 /// Forwards all calls to `camera`. Appends every frame, every failure of next() and every failure of a correction to
-/// `stream` before returning it. next() fails with `io` if a record cannot be written. The writer of readings shares
-/// the stream.
+/// `stream` before the call returns. next() fails with `io` if a record cannot be written. The code that appends
+/// readings uses the same stream.
 [[nodiscard]] std::unique_ptr<FrameSource> recording_camera(std::unique_ptr<FrameSource> camera,
                                                             std::shared_ptr<FrameStreamWriter> stream);
 

@@ -26,7 +26,8 @@ struct ValueCounts {
   [[nodiscard]] Result<cv::Mat1w> counts(const cv::Mat& values) const;
   /// Returns the scale of the counts. `of_values`: scale of the values in the file, if they have one.
   [[nodiscard]] Result<RadiometricScale> scale(const RadiometricScale& of_values) const;
-  /// Returns the relation between values and counts in words, for provenance; empty if they are equal.
+  /// Returns a text that describes the relation between values and counts, for provenance; empty if values and counts
+  /// are equal.
   [[nodiscard]] std::string describe() const;
 };
 

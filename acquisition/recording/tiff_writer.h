@@ -10,9 +10,9 @@
 
 namespace todbench {
 
-/// Appends pages, uncompressed, little-endian, BigTIFF (no limit of 4 GiB). Pixels and directory of a page are
-/// completely in the file before the preceding page points to it. Therefore, after the program is killed or on a full
-/// disk, the file is readable up to its last complete page. Move-only, one thread at a time. Errors: `io` with the
+/// Appends pages, uncompressed, little-endian, BigTIFF (no limit of 4 GiB). The preceding page refers to a page only
+/// after pixels and directory of this page are completely in the file. If the program is killed or the disk is full,
+/// the file is therefore readable up to its last complete page. Move-only, one thread at a time. Errors: `io` with the
 /// path; an incomplete page is then truncated, and later pages are refused.
 class TiffWriter {
  public:

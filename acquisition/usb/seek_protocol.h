@@ -67,14 +67,14 @@ struct SeekTransfer {
   std::vector<std::uint8_t> data;
   [[nodiscard]] bool reads() const;
 };
-/// Transfers required before the first frame, in order.
+/// Returns the transfers required before the first frame, in order.
 [[nodiscard]] std::vector<SeekTransfer> seek_initialisation(SeekModel model);
-/// Returns the transfer that puts the camera to sleep. Send it three times, as the camera's own software does.
+/// Returns the transfer that puts the camera to sleep. Send it three times, as the software of the manufacturer does.
 [[nodiscard]] SeekTransfer seek_sleep();
 /// Returns the transfer that requests one frame.
 [[nodiscard]] SeekTransfer seek_frame_request(SeekModel model);
 
-/// Content of a frame, by its number on the wire. The other numbers are all used for calibration.
+/// Content of a frame, by its number in the protocol. All other numbers are used for calibration.
 enum class SeekFrameKind : std::uint16_t {
   shutter = 1,      ///< the closed shutter: shows the offsets of the pixels
   image = 3,        ///< the scene
@@ -94,20 +94,20 @@ struct SeekFrame {
 /// Returns the counter of a truncated frame; empty if the bytes end before the counter.
 [[nodiscard]] std::optional<std::uint16_t> seek_counter(std::span<const std::uint8_t> bytes, SeekModel model);
 
-/// Pixels without a signal, and the neighbours that replace each. A pixel is dead if it is zero in the calibration
-/// frame, or below half the median of the pixels that are not zero. It gets the mean, rounded down, of those of its
-/// four neighbours that are alive or already filled. Larger defects are filled from the rim inwards, each ring from the
-/// ring around it, so that the result does not depend on the order within a ring.
+/// Pixels without a signal, and the neighbours that replace each of them. A pixel is dead if it is zero in the
+/// calibration frame, or below half the median of the pixels that are not zero. A dead pixel gets the mean, rounded
+/// down, of its four neighbours, without neighbours that are dead and not yet filled. Larger defects are filled from
+/// the rim inwards, each ring from the ring around it. The result therefore does not depend on the order within a ring.
 class SeekDeadPixels {
  public:
   SeekDeadPixels() = default;  ///< none
   explicit SeekDeadPixels(const cv::Mat1w& calibration_picture);
   [[nodiscard]] std::size_t count() const { return dead_; }
-  /// Returns the depth of the deepest pixel inside a defect; 1 for a pixel with a living neighbour.
+  /// Returns the depth of the deepest pixel inside a defect; 1 for a dead pixel with a live neighbour.
   [[nodiscard]] int depth() const { return depth_; }
-  /// Error: `calibration` if too many pixels are replaced. The limits are 10 % of the pixels and a defect depth of 2
-  /// pixels; a deeper defect hides a target of 4 pixels. By design a Compact omits every fifteenth pixel (6.7 %); 0.3
-  /// to 1 % of its pixels are dead.
+  /// Checks the number of replaced pixels. Error: `calibration` if too many pixels are replaced. The limits are 10 % of
+  /// the pixels and a defect depth of 2 pixels; a deeper defect hides a target of 4 pixels. By design a Compact omits
+  /// every fifteenth pixel (6.7 %); 0.3 to 1 % of the pixels are dead.
   [[nodiscard]] Result<void> check() const;
   /// Fills the dead pixels. Precondition: same geometry as the calibration picture, or no dead pixels.
   void fill(cv::Mat1w& picture) const;

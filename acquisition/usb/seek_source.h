@@ -51,7 +51,7 @@ class SeekSource final : public FrameSource {
   SeekModel model_;
   SourceInfo info_;
   std::shared_ptr<const RadiometricScale> scale_;
-  double kelvin_per_count_ = 0, offset_k_ = 0;  ///< stated by the user; 0: not stated
+  double kelvin_per_count_ = 0, offset_k_ = 0;  ///< scale stated by the user; 0: not stated
   SeekDeadPixels dead_;
   cv::Mat1w shutter_;
   std::int64_t shutter_time_ns_ = 0;

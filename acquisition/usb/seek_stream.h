@@ -24,7 +24,7 @@ struct SeekArrival {
   bool after_unread = false;        ///< frames directly before this one were dropped because the reader was slow
 };
 
-/// Requests and receives frames on its own thread from creation to end().
+/// Requests and receives frames on a separate thread, from creation to end().
 class SeekStream {
  public:
   /// Starts a stream. `connection` must outlive it. `waiting`: maximum number of frames kept for a slow reader. Further

@@ -24,7 +24,7 @@ enum class BosonFunction : std::uint32_t {
   get_gain_mode = 0x00050015,
 };
 
-/// The answer of the camera to a request.
+/// Answer of the camera to a request.
 struct BosonReply {
   std::uint32_t sequence = 0, function = 0;
   std::uint32_t status = 0;  ///< 0: done
@@ -35,8 +35,8 @@ struct BosonReply {
 /// The three bytes that the framing uses are escaped inside the request.
 [[nodiscard]] std::string boson_request(std::uint32_t sequence, BosonFunction function, std::string_view payload = {});
 
-/// Reads the bytes from a start byte to the next end byte, both included. Error: `invalid_input` (no frame, an unknown
-/// escape, a wrong CRC, a wrong channel, too short).
+/// Reads the bytes from a start byte to the next end byte, both included. Error: `invalid_input` (no complete frame, an
+/// unknown escape, a wrong CRC, a wrong channel, too few bytes).
 [[nodiscard]] Result<BosonReply> boson_reply(std::string_view frame);
 
 /// Return the names of the modes that the features GainMode and FFCMode use; empty for an unknown number.
@@ -53,7 +53,7 @@ class BosonPort {
   /// request, or its answer is damaged).
   [[nodiscard]] Result<std::string> call(BosonFunction function, std::string_view payload = {},
                                          std::chrono::milliseconds patience = std::chrono::milliseconds(2000));
-  /// Returns the mode that a function reads. Errors as call().
+  /// Calls a function that reads a mode, and returns the mode. Errors as call().
   [[nodiscard]] Result<std::uint32_t> mode(BosonFunction function);
   [[nodiscard]] Result<void> set_mode(BosonFunction function, std::uint32_t number);
 

@@ -14,13 +14,13 @@ namespace todbench {
 enum class FfcState { never, imminent, in_progress, complete };
 
 /// The fields of the Lepton's telemetry that a measurement needs. Words are numbered from the first telemetry row (row
-/// A is words 0-79, B 80-159, C 160-239); 32-bit numbers have their low word first (Lepton engineering data sheet,
+/// A: words 0-79, B: 80-159, C: 160-239). The low word of a 32-bit number is first (Lepton engineering data sheet,
 /// telemetry data content encoding).
 struct LeptonTelemetry {
   std::uint16_t revision = 0;
   std::uint32_t time_ms = 0;  ///< since power-up
   std::uint32_t status = 0;
-  std::uint32_t frame_counter = 0;         ///< number of the frame at the sensor's own rate of 26 Hz; unchanged in a
+  std::uint32_t frame_counter = 0;         ///< number of the frame at the rate of the sensor, 26 Hz; unchanged in a
                                            ///< repeated frame
   double fpa_temperature_k = 0;            ///< temperature of the detector
   double fpa_temperature_ffc_k = 0;        ///< temperature of the detector at the last flat-field correction
@@ -29,7 +29,7 @@ struct LeptonTelemetry {
                                            ///< radiant flux
 
   [[nodiscard]] FfcState ffc_state() const { return static_cast<FfcState>(status >> 4U & 3U); }
-  /// Returns whether automatic gain is on: the counts then have no radiometric meaning.
+  /// Returns whether automatic gain is on. The counts then have no radiometric meaning.
   [[nodiscard]] bool agc() const { return (status >> 12U & 1U) != 0; }
   /// Returns the time since the last correction, also across a wrap of the 32-bit clock; empty before the first
   /// correction.
@@ -44,7 +44,7 @@ inline constexpr std::size_t lepton_telemetry_words = 240;
 [[nodiscard]] int lepton_telemetry_rows(int width);
 
 /// Parses telemetry. Empty if there are fewer than 240 words or the revision word does not belong to a telemetry row.
-/// In telemetry its high byte is 1 ... 31; in other rows it has 0 or all bits set.
+/// The high byte of the revision word is 1 ... 31 in telemetry. In other rows it is 0 or has all bits set.
 [[nodiscard]] std::optional<LeptonTelemetry> parse_lepton_telemetry(std::span<const std::uint16_t> words);
 
 /// Encodes telemetry for a device that sends it: 240 words. Words without a member in the struct are zero.

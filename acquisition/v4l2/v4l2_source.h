@@ -64,7 +64,7 @@ class V4l2Source final : public FrameSource {
   void refresh();
   /// Opens the serial port of a Boson, if it has one.
   void open_serial_port();
-  /// Reads the settings of a Boson from its serial port, for settings and warnings.
+  /// Reads the settings of a Boson through its serial port, and updates settings and warnings.
   void refresh_serial_port();
   /// Writes GainMode or FFCMode. Error: `not_found` with the accepted values.
   [[nodiscard]] Result<void> set_boson_mode(const std::string& feature, const std::string& value);
@@ -72,7 +72,7 @@ class V4l2Source final : public FrameSource {
   void set_scale(const RadiometricScale& scale);
   [[nodiscard]] RadiometricScale scale_of(const LeptonTelemetry& telemetry) const;
   /// Reads frames until one contains the scale, for a camera that reports its scale only in telemetry. The first frames
-  /// may lack it.
+  /// may have no scale.
   [[nodiscard]] Result<void> learn_scale();
 
   /// Runs the receiving thread. It fetches every frame immediately, so that the frame's host time is its time of
@@ -98,7 +98,7 @@ class V4l2Source final : public FrameSource {
   VideoLayout layout_;
   WantedLayout wanted_;
   std::string nuc_command_;                        ///< control that corrects the non-uniformity; empty: search by name
-  std::optional<double> stated_kelvin_per_count_;  ///< stated by the user if the camera does not report it
+  std::optional<double> stated_kelvin_per_count_;  ///< scale stated by the user because the camera does not report it
   double stated_offset_k_ = 0;
 
   // Members used by the reader during one run.
@@ -113,7 +113,7 @@ class V4l2Source final : public FrameSource {
   VideoDevice device_;  ///< used by the receiving thread while it runs, except for controls
   std::vector<VideoControl> controls_;
   std::optional<BosonPort> serial_port_;  ///< serial port of a Boson
-  std::string serial_port_problem_;       ///< reason why it is not used; empty: no problem
+  std::string serial_port_problem_;       ///< reason why the serial port is not used; empty: no problem
   mutable Inbox inbox_;
   std::jthread receiver_;
 };

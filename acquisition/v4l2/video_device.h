@@ -48,12 +48,12 @@ class VideoDevice {
 
   [[nodiscard]] int fd() const { return fd_.get(); }
   [[nodiscard]] const VideoCapability& capability() const { return capability_; }
-  /// Lists formats and discrete sizes; a range of sizes is represented by its largest. If a driver lists no sizes, very
-  /// large and very small sizes are tried; the result contains the sizes that the driver substitutes and the present
-  /// size. `also`: a size that is also tried in every format, for a driver that lists only a range.
+  /// Lists formats and discrete sizes. For a range of sizes, the largest size is listed. If a driver lists no sizes,
+  /// very large and very small sizes are tried; the result contains the sizes that the driver substitutes and the
+  /// present size. `also`: a size that is also tried in every format, for a driver that lists only a range.
   [[nodiscard]] std::vector<VideoMode> modes(const std::optional<cv::Size>& also = {}) const;
-  /// Sets the mode. Returns the layout with the driver's row length. Error: `not_found` (busy, or the driver set
-  /// another mode).
+  /// Sets the mode. Returns the layout with the driver's row length. Error: `not_found` (busy, or the driver set a
+  /// different mode).
   [[nodiscard]] Result<VideoLayout> set_format(VideoLayout layout);
   /// Fails if the present format differs from the format of the layout.
   [[nodiscard]] Result<void> check_format(const VideoLayout& layout) const;
@@ -96,8 +96,8 @@ class VideoDevice {
   [[nodiscard]] std::vector<VideoMode> listed_sizes(std::uint32_t fourcc) const;
   /// Returns the sizes found by trying.
   [[nodiscard]] std::vector<VideoMode> tried_sizes(std::uint32_t fourcc) const;
-  /// Returns the size that the driver would use for `wanted`; empty if the query fails or the driver would use another
-  /// format.
+  /// Returns the size that the driver would use for `wanted`; empty if the query fails or the driver would use a
+  /// different format.
   [[nodiscard]] std::optional<VideoMode> tried(VideoMode wanted) const;
 
   Descriptor fd_;

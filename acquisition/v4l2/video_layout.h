@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Meaning of the rows of a video frame. All rows are picture, or a display picture stands above temperatures, or
-// telemetry stands above or below the picture. Pure functions over untrusted bytes.
+// Meaning of the rows of a video frame. There are three layouts: only a picture; a display picture above temperatures;
+// telemetry above or below a picture. Pure functions over untrusted bytes.
 #pragma once
 
 #include <cstddef>
@@ -44,14 +44,15 @@ struct VideoLayout {
   int significant_bits = 16;
   cv::Rect picture;        ///< rows that contain counts
   int telemetry_rows = 0;  ///< telemetry rows of a Lepton below the picture
-  /// Rows without picture, all above or all below it. `picture` then begins at the first row that may belong to either.
-  /// Their position is determined in each frame: they differ more from their neighbours than rows of the picture do.
+  /// Number of rows that do not belong to the picture, all above or all below it. If it is not 0, `picture` begins at
+  /// the first row that may belong to the picture. The position of these rows is determined in each frame, because they
+  /// differ more from neighbouring rows than rows of the picture do.
   int foreign_rows = 0;
   double kelvin_per_count = 0;  ///< 0: the family does not report it
 };
 
-/// Maximum number of additional rows that are interpreted as telemetry if a mode is higher than another mode of the
-/// same camera and width. Telemetry of the Boson and the Tau has up to 4 rows.
+/// Maximum number of additional rows that are interpreted as telemetry if a camera has two modes of the same width and
+/// different heights. Telemetry of the Boson and the Tau has up to 4 rows.
 inline constexpr int most_foreign_rows = 4;
 
 /// The user's choice of a mode; empty members are chosen automatically.
@@ -61,22 +62,22 @@ struct WantedLayout {
 };
 
 /// Chooses the best mode: 16 bits before 14, 12, 10 and 8; then the largest picture. For a Lepton, modes with telemetry
-/// rows are preferred; for other cameras, modes without. If a mode has up to four rows more than another mode of the
-/// same format and width, these rows are telemetry. Error: `not_found` with the camera's modes. YUYV of a camera
-/// without temperature rows is a display picture and cannot be measured.
+/// rows are preferred; for other cameras, modes without. If two modes have the same format and width, and the heights
+/// differ by up to four rows, the additional rows are telemetry. YUYV of a camera without temperature rows is a display
+/// picture and cannot be measured. Error: `not_found` with the camera's modes.
 [[nodiscard]] Result<VideoLayout> choose_layout(const std::vector<VideoMode>& modes, VideoFamily family,
                                                 const WantedLayout& wanted);
 
 /// A decoded frame.
 struct VideoPicture {
   cv::Mat1w counts;
-  bool begins_in_the_middle = false;  ///< the two halves of a frame with temperature rows are displaced
+  bool begins_in_the_middle = false;  ///< the two halves of a frame with temperature rows are at wrong positions
   std::optional<LeptonTelemetry> telemetry;
 };
 
-/// Decodes counts and telemetry of one frame. Error: `invalid_input` if the number of bytes differs from the layout. If
-/// there are more bytes, the rows are longer than the driver reports or additional rows exist, so the position of every
-/// pixel is uncertain.
+/// Decodes counts and telemetry of one frame. Error: `invalid_input` if the number of bytes differs from the layout.
+/// With more bytes than expected, rows may be longer than the driver reports or additional rows may exist, so the
+/// position of every pixel is uncertain.
 [[nodiscard]] Result<VideoPicture> read_video_frame(std::span<const std::uint8_t> bytes, const VideoLayout& layout);
 
 /// Returns a text for messages: "Y16 ", "YUYV", "Y16 -BE".

@@ -33,8 +33,8 @@ struct VideoNode {
 /// serial number is identified by its port: "v4l2:VENDOR-MODEL-at_1_2.3".
 [[nodiscard]] std::string video_id(const VideoNode& node);
 
-/// Assigns a unique id to every node. Cameras of one kind with equal serial numbers are also distinguished by their
-/// ports, "v4l2:VENDOR-MODEL-SERIAL-at_1_2.3", because the order of their nodes changes when they are plugged in again.
+/// Assigns a unique id to every node. For cameras of one kind with equal serial numbers, the id also contains the port,
+/// "v4l2:VENDOR-MODEL-SERIAL-at_1_2.3", because the order of the nodes changes when the cameras are plugged in again.
 /// If ids are still equal, the nodes are numbered in the order of the list: the second ends in ".2".
 void tell_apart(std::vector<VideoNode>& nodes);
 
@@ -51,7 +51,7 @@ struct VideoEvent {
   enum class Kind { arrived, removed };
   Kind kind = Kind::arrived;
   std::string node;      ///< "/dev/video2"
-  std::string sys_path;  ///< distinguishes it from another device that gets the same node later
+  std::string sys_path;  ///< distinguishes the device from a different device that gets the same node later
 };
 
 /// Arrivals and removals of video devices since its creation. One thread at a time.

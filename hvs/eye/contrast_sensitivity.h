@@ -40,8 +40,8 @@ class EyeFilter {
   /// square degree. It is 0 at frequency 0 and from the diffraction limit upwards.
   [[nodiscard]] double detection_power(double frequency_per_degree) const;
   /// Returns H^2 for identification: the detection power times (d'(M) / d'(1))^2 with M channels of uncertainty. The
-  /// factor is needed because the parameters were fitted to detection data, which include the uncertainty. An observer
-  /// that searches explicitly has less uncertainty.
+  /// factor is needed because the parameters were fitted to detection data, which contain the effect of this
+  /// uncertainty. An observer model with an explicit search has less uncertainty.
   [[nodiscard]] double identification_power(double frequency_per_degree) const {
     return identification_gain_ * detection_power(frequency_per_degree);
   }

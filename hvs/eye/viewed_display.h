@@ -63,10 +63,11 @@ struct ViewedDisplay {
 [[nodiscard]] Result<double> luminance_contrast(const ViewedDisplay& display, double delta_t_k);
 /// Returns luminance_contrast(), or the largest contrast that can be shown if the contrast exceeds it.
 [[nodiscard]] double shown_contrast(const ViewedDisplay& display, double delta_t_k);
-/// Returns the transfer of the display at (u, w) cycles per displayed sample. It includes interpolation and spot, and
-/// is real and even.
+/// Returns the transfer function of the display at (u, w) cycles per displayed sample. It includes interpolation and
+/// spot, and is real and even.
 [[nodiscard]] double display_transfer(const ViewedDisplay& display, double u, double w);
-/// Returns a warning if a displayed sample is below 2 arcmin, because the eye then limits the test. Otherwise empty.
+/// Returns a warning if a displayed sample is smaller than 2 arcmin, because the eye then limits the result of the
+/// test. Otherwise empty.
 [[nodiscard]] std::optional<std::string> small_sample_warning(const ViewedDisplay& display);
 
 }  // namespace todbench

@@ -19,7 +19,7 @@ namespace todbench {
 /// A patch with a recorded answer.
 struct AnsweredPatch {
   cv::Mat1f kelvin;       ///< square with an even number of samples on a side; centred in the observer's window
-  double contrast_k = 0;  ///< effective, with its sign
+  double contrast_k = 0;  ///< effective contrast, signed
   double noise_k = 0;     ///< temporal noise of the sensor, sd per sample
   double size_samples = 0;
   int samples_per_pitch = 1;
@@ -31,22 +31,24 @@ struct AnswerLogProbabilities {
   std::array<double, max_alternatives> value{};
 };
 
-/// Probabilities of a template observer's answers to patches, averaged over the internal noise of the observer. They
-/// are computed for any blur sigma and any standard deviation s of this noise per sample (relative to the contrast).
+/// Probabilities of a template observer's answers to patches, averaged over the internal noise of the observer. The
+/// probabilities are available for any blur sigma and any standard deviation s of this noise per sample (relative to
+/// the contrast).
 ///
 /// Values are computed at the nodes of a lattice in ln sigma and ln s. The same draws of white noise z in the window
 /// are used for all nodes and for all patches of one size. The score of template t is <T_t, g> + s <T_t, z>. The
 /// component of z along the difference of the two best templates is integrated in closed form (conditioning, Owen 2013,
-/// 8.7). The largest score of an alternative is a convex function of this component. The function is approximated as
+/// 8.7). The largest score of an alternative is a convex function of this component. This function is approximated as
 /// piecewise linear between 19 points at distances of half a standard deviation. The probability of each range in which
 /// an alternative has the largest score is computed from the normal distribution. Each z is used with both signs. To
-/// avoid probabilities of 0, half a draw is added. Its weight is the probability that the best template of the
-/// alternative has the largest score. Between the nodes, ln p is interpolated by monotone cubics (Steffen 1990), first
-/// along s, then along sigma. The probabilities are then normalised to a sum of 1.
+/// avoid probabilities of 0, half a draw is added to each alternative, weighted by the probability that the best
+/// template of the alternative has the largest score. Between the nodes, ln p is interpolated by monotone cubics
+/// (Steffen 1990), first along s, then along sigma. The probabilities are then normalised to a sum of 1.
 ///
-/// With an eye the two coordinates are standard deviations: that of the eye's noise in a score (EyeNoise::sd()), and
-/// that of the white noise per sample. Except for a common factor, the covariance of the scores depends only on the
-/// ratio of these two, so nodes with equal ratios share their draws. Otherwise the computation is unchanged.
+/// For an observer with an eye, the two coordinates are standard deviations: that of the eye's noise in a score
+/// (EyeNoise::sd()), and that of the white noise per sample. Except for a common factor, the covariance of the scores
+/// depends only on the ratio of these two standard deviations. Nodes with equal ratios therefore use the same draws.
+/// The rest of the computation is the same.
 ///
 /// Nodes are computed on first use. One thread at a time.
 class AnswerLattice {

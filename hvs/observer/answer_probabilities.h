@@ -24,9 +24,9 @@ struct AnswerRoom {
 /// noise, as computed by the bank; `levels`: standard deviations of the noise, in the unit of the scores.
 ///
 /// Without noise the alternative with the largest score has probability 1; alternatives with equal scores share it.
-/// With noise, a template is considered only if its score is within five standard deviations of the largest score:
-/// score_best - score < 5 sd sqrt(2 (1 - rho)), where rho is the correlation of the two scores. If only one alternative
-/// remains, its probability is 1 (error below 3e-7 for each omitted template).
+/// With noise, a template is used only if its score is within five standard deviations of the largest score: score_best
+/// - score < 5 sd sqrt(2 (1 - rho)), where rho is the correlation of the two scores. If only one alternative remains,
+/// its probability is 1 (error below 3e-7 for each omitted template).
 ///
 /// Otherwise the noise is drawn. The decision depends most on the noise component along the difference of the templates
 /// of the two best alternatives. This component is drawn in eight strata of equal probability, one value in each

@@ -29,7 +29,7 @@ struct EyeTemplates {
 /// Immutable, thread-safe.
 class EyeNoise {
  public:
-  /// Largest share of the variance of a score that the draws may omit. For comparison, the scores of two small
+  /// Largest share of the variance of a score that may be missing in the draws. For comparison, the scores of two small
   /// triangles differ by about 1e-2 of their variance.
   static constexpr double max_left_out = 3e-4;
 
@@ -63,8 +63,8 @@ class EyeNoise {
 
   EyeTemplates templates_;
   double energy_ = 0;
-  /// True: alternative o is alternative 0 after o quarter turns, and the filter has the same symmetry. Four tables are
-  /// then sufficient.
+  /// True if alternative o is alternative 0 after o quarter turns, and the filter has the same symmetry. Four tables
+  /// are then sufficient.
   bool turned_ = false;
   std::vector<std::vector<double>> tables_;  ///< G for each pair of alternatives, as a function of the displacement
   std::vector<std::vector<double>> columns_;

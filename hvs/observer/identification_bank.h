@@ -26,9 +26,9 @@ struct KnownCamera {
   double band_per_sample = 3;
 };
 
-/// Returns a picture minus its background. The background is the mean of the picture or, for an eye, the mean of its
-/// outermost samples. The reason is that an eye does not respond to a uniform field, but responds to a part of the mean
-/// of a large target.
+/// Returns a picture minus its background. The background is the mean of the picture or, for an observer with an eye,
+/// the mean of its outermost samples. The reason is that an eye does not respond to a uniform field, but responds to a
+/// part of the mean of a large target.
 [[nodiscard]] cv::Mat1f without_background(const TemplateObserverSpec& spec, cv::Mat1f picture);
 
 /// Returns the side of the search window in samples, an even number.
@@ -40,19 +40,19 @@ struct KnownCamera {
 /// blur of the eye, at one search position, minus its mean and divided by its norm. The score of an alternative is the
 /// largest score over its views and search positions.
 ///
-/// Blur affects the four orientations of a triangle equally, but it can make one shape similar to another. The
-/// templates can therefore include the blur of a known camera. Without an eye (hvs-1) this blur replaces display and
-/// blur of the eye; with an eye it is applied before display and eye. The shown alternative then has the largest score
-/// if there is no noise (Cauchy-Schwarz inequality).
+/// Blur affects the four orientations of a triangle equally, but it can make different shapes similar. The templates
+/// can therefore include the blur of a known camera. Without an eye (hvs-1) this blur replaces display and blur of the
+/// eye; with an eye it is applied before display and eye. Without noise, the shown alternative then has the largest
+/// score (Cauchy-Schwarz inequality).
 ///
 /// The templates of one view at all search positions (289 in hvs-1) are computed as linear combinations of fewer
 /// orthonormal pictures: 30 to 70 for triangles up to 4 samples. The residual of every template is below 1e-4 of its
 /// norm, so the error of a score is at most 1e-4 of the norm of the patch.
 ///
-/// With an eye (hvs-2) a template is the ideal picture after display and eye, divided by its own norm after the eye.
-/// This norm is equal for all orientations of a triangle, but differs between shapes. The noise of the eye is white
-/// after H. Its scores are computed from white pictures on a lattice that is fine enough for the eye. For these scores,
-/// display and H are applied to the templates once. Immutable, thread-safe.
+/// With an eye (hvs-2) a template is the ideal picture after display and eye, divided by its norm after the eye. This
+/// norm is equal for all orientations of a triangle, but differs between shapes. The noise of the eye is white after H.
+/// The scores of this noise are computed from white pictures on a lattice that is fine enough for the eye. For these
+/// scores, display and H are applied to the templates once. Immutable, thread-safe.
 class IdentificationBank {
  public:
   /// Computes the templates. `camera`: empty for ideal templates, as for triangles. Error: `invalid_input` (fewer than
@@ -82,9 +82,9 @@ class IdentificationBank {
     return eye_->project_all(white);
   }
   /// Returns the standard deviation of the eye's noise in a score, for pictures in kelvin. `contrast_k`: contrast of
-  /// the shown view; `level`: the same contrast in the unit of its edges. `seeing`: the observer of the bank, or an
-  /// observer that differs from it only in sensitivity, channels or contrast noise. Precondition: the observer has an
-  /// eye.
+  /// the shown view; `level`: this contrast in the unit of the edges of the view. `seeing`: the observer of the bank,
+  /// or an observer that differs from that observer only in sensitivity, channels or contrast noise. Precondition: the
+  /// observer has an eye.
   [[nodiscard]] double eye_noise_k(const TemplateObserverSpec& seeing, std::size_t alternative, std::size_t aspect,
                                    double contrast_k, double level) const;
   /// Returns d'^2 of a view at luminance contrast 1, for the observer of the bank; `level` as in eye_noise_k().

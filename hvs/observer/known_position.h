@@ -16,9 +16,9 @@ struct KnownPositionTask {
   double noise = 1;  ///< sd of white noise per sample, in the unit of the signal; 0: no noise
 };
 
-/// Returns the probability that the first variable is the largest. This is a three-dimensional orthant probability. It
-/// is computed by sequential conditioning (Genz 1992) with a tensor Gauss-Legendre rule of nodes x nodes points. The
-/// error is about 1e-4 with 16 nodes and 1e-7 with 192 nodes. Without noise, equal responses share the probability.
+/// Returns the probability that the first variable is the largest. This three-dimensional orthant probability is
+/// computed by sequential conditioning (Genz 1992) with a tensor Gauss-Legendre rule of nodes x nodes points. The error
+/// is about 1e-4 with 16 nodes and 1e-7 with 192 nodes. Without noise, equal responses share the probability.
 [[nodiscard]] double probability_correct(const KnownPositionTask& task, int nodes);
 /// Returns the same probability. `rule`: result of gauss_legendre(), which the caller reuses for many tasks.
 [[nodiscard]] double probability_correct(const KnownPositionTask& task, std::span<const QuadratureNode> rule);

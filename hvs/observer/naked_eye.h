@@ -30,7 +30,7 @@ class NakedEyeShape {
   [[nodiscard]] double probability_correct(const EyeFilter& eye, double contrast_noise, double contrast,
                                            double size_deg) const;
   /// Returns the size (square root of area) in degrees at which `share_correct` of the answers are correct. The share
-  /// is 75 % for a TOD and 62.5 % for an acuity test, half way between chance and 100 %. Empty if the size is not
+  /// is 75 % for a TOD. For an acuity test it is 62.5 %, half way between chance and 100 %. Empty if the size is not
   /// between 0.001 and 3 degrees.
   [[nodiscard]] std::optional<double> threshold_deg(const EyeFilter& eye, double contrast_noise, double contrast,
                                                     double share_correct) const;

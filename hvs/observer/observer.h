@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interface of observers, which determine the orientation of a target. Their input is limited to patches and
-// alternatives. They have no access to plates, files or cameras.
+// Interface of observers, which determine the orientation of a target. The input of an observer is limited to patches
+// and alternatives. Observers have no access to plates, files or cameras.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ namespace todbench {
 
 /// The window around one target, in displayed samples. Square, an even number of samples on a side.
 struct Patch {
-  cv::Mat1d kelvin;   ///< temperatures with any constant background, because only differences matter
+  cv::Mat1d kelvin;   ///< temperatures; the level of the background has no effect, because only differences are used
   cv::Point2d phase;  ///< target centroid minus window centre, in samples; ignored by observers that search
   /// Temporal noise of the sensor, sd per sample; used only by observers that enlarge this noise.
   double noise_k = 0;
@@ -54,9 +54,9 @@ class PreparedObserver {
   [[nodiscard]] virtual int window_samples() const = 0;
   /// Returns the search range of the templates beyond the window's edge, in samples.
   [[nodiscard]] virtual double search_samples() const = 0;
-  /// Returns the answer. `contrast_k` (with sign): effective contrast of the target. `noise`: random stream that is
-  /// used only for this trial. It provides the internal noise and decides between equal scores. The patch has
-  /// window_samples() on a side. Allocates no memory.
+  /// Returns the answer. `contrast_k` (with sign): effective contrast of the target. `noise`: random stream for this
+  /// trial, for the internal noise and for the choice between equal scores. The patch has window_samples() on a side.
+  /// Allocates no memory.
   [[nodiscard]] virtual Choice choose(const Patch& patch, double contrast_k, const RandomStream& noise) const = 0;
   /// Returns the answer of choose() and the probability of every answer to the patch, averaged over the internal noise.
   /// The average is exact if possible; otherwise it is taken over `draws` noise draws. Allocates no memory after the

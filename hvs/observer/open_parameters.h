@@ -14,9 +14,10 @@
 
 namespace todbench {
 
-/// Observers with the open parameters at their limits: sensitivity -4 to +4 dB, uncertainty of 100 to 3000 channels,
-/// contrast noise 0 to 0.07, sensor-noise factor 1.1 to 3.2. A parameter outside its range is not changed. The acuity
-/// is monotone in each parameter, so these two observers have the highest and the lowest acuity of the range.
+/// The two observers with the open parameters at their limits: sensitivity -4 to +4 dB, uncertainty of 100 to 3000
+/// channels, contrast noise 0 to 0.07, sensor-noise factor 1.1 to 3.2. A parameter outside its range is not changed.
+/// The acuity is monotone in each parameter, so these two observers have the highest and the lowest acuity of the
+/// range.
 struct OpenParameterRange {
   TemplateObserverSpec best, worst;
 };
@@ -44,7 +45,7 @@ template <typename Find>
 
 /// Returns the spread of a quantity: the smallest and the largest of `values`. Pass the values of the best and the
 /// worst observer of the range. If the quantity is not monotone in the parameters, also pass the value of the observer
-/// itself. Empty if one of the values is missing. The spread is not a confidence interval.
+/// with the nominal parameters. Empty if one of the values is missing. The spread is not a confidence interval.
 [[nodiscard]] std::optional<std::pair<double, double>> spread_of(std::initializer_list<std::optional<double>> values);
 
 }  // namespace todbench

@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Standard deviations of the noise that an observer adds, in units of its signal.
+/// Standard deviations of the noise that an observer adds, in units of the signal.
 struct ScoreNoiseLevels {
   double white = 0;  ///< white noise per sample
   double eye = 0;    ///< noise of the eye in a score (EyeNoise::sd())
@@ -23,11 +23,11 @@ enum class AddedWhiteNoise { no, yes };
 
 /// Factor of the covariance of template scores. The scores of white noise with sd 1 per sample are jointly normal, and
 /// their covariance is the matrix of template products. Templates of one shape at neighbouring positions are nearly
-/// equal, so this matrix has a small effective rank. A pivoted Cholesky decomposition (Harbrecht, Peters and Schneider
+/// equal, so this matrix has a low effective rank. A pivoted Cholesky decomposition (Harbrecht, Peters and Schneider
 /// 2012) ends when at most `max_left_out` of the variance of every template remains. Immutable, thread-safe.
 ///
-/// With an eye, the random numbers of the eye's noise come first, then those of the white noise. weigh() scales both to
-/// their shares of the total.
+/// With an eye, the random numbers of the eye's noise are first, followed by those of the white noise. weigh() scales
+/// both to their shares of the total.
 ///
 /// Each alternative begins a new row of scores: alternative o at search position p is element o * row() + p.
 class ScoreNoise {

@@ -9,13 +9,13 @@
 namespace todbench {
 
 /// Filters pictures with display and H. Each value of the result is the mean over the area of a displayed sample. The
-/// noise of the eye is independent between these means. Its standard deviation is 1 / (side of a sample in degrees).
-/// Immutable, thread-safe.
+/// noise of the eye is independent between these means and has a standard deviation of 1 / (side of a sample in
+/// degrees). Immutable, thread-safe.
 class SeenPicture {
  public:
   /// Prepares the filter for square pictures of `side` samples. Precondition: an eye with a display.
   SeenPicture(const TemplateObserverSpec& spec, int side);
-  /// Returns a picture after display and eye. Outside its border, the picture is continued with the mean of its
+  /// Returns a picture after display and eye. Outside the border, the picture is continued with the mean of its
   /// outermost samples.
   [[nodiscard]] cv::Mat1f of(const cv::Mat1f& picture) const;
 

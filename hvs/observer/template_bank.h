@@ -20,8 +20,8 @@ struct TemplateObserverSpec;
 /// With an eye the templates are the ideal shapes after display and eye, with a common scale factor: the central
 /// template of the first alternative has the norm 1.
 ///
-/// Template (o, p) is alternative o at search position p. Its values are those at the centres of the displayed samples:
-/// k + 1/2 from the centre of the window, k = -m .. m - 1.
+/// Template (o, p) is alternative o at search position p. A template has one value for the centre of each displayed
+/// sample: k + 1/2 from the centre of the window, k = -m .. m - 1.
 class TemplateBank {
  public:
   /// Computes the templates. Error: `invalid_input` if the bank would exceed `max_bytes`.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The template observer. It correlates a patch with ideal shapes after the viewing filter, at every search position.
-// hvs-1 has a blur, and internal noise proportional to the contrast. hvs-2 has a display and an eye.
+// The observer hvs-1 has a blur, and internal noise proportional to the contrast. The observer hvs-2 has a display and
+// an eye.
 #pragma once
 
 #include <map>
@@ -33,10 +34,10 @@ struct TemplateObserverSpec {
   /// Eye of the observer (hvs-2). It replaces blur_sigma_samples and internal_noise; set internal_noise to 0. An eye
   /// requires a display.
   std::optional<EyeParameters> eye{};
-  /// Margin of the half window in arcmin; the larger of the two margins applies; only with an eye.
+  /// Margin of the half window in arcmin; only with an eye. The larger of the two margins is used.
   double window_margin_arcmin = 0;
   std::optional<ViewedDisplay> display{};  ///< display of the plan; only with an eye
-  /// Ratio of height to width of a displayed sample, equal to that of a pixel of the camera. Lengths in samples are in
+  /// Ratio of height to width of a displayed sample, equal to that of a pixel of the camera. A length in samples is in
   /// units of the width. Search range and step are in units of the sample along each axis. Not part of a parameter set.
   /// An eye requires 1.
   double sample_aspect = 1;
@@ -52,7 +53,7 @@ struct TemplateObserverSpec {
 /// memory; one value per sample.
 void seen_patch(const TemplateObserverSpec& spec, const Patch& patch, double contrast_k, const RandomStream& noise,
                 std::span<float> seen, std::span<float> room);
-/// Returns the alternative with the highest score; equal scores are decided by the trial's `noise`.
+/// Returns the alternative with the highest score; between equal scores, the trial's `noise` decides.
 [[nodiscard]] int winning_alternative(const Choice& choice, const RandomStream& noise);
 
 /// Observer that correlates a patch with ideal shapes at every search position.
@@ -64,7 +65,7 @@ class TemplateObserver final : public Observer {
   [[nodiscard]] const TemplateObserverSpec& spec() const { return spec_; }
   [[nodiscard]] Result<std::shared_ptr<const PreparedObserver>> prepare(double size_samples,
                                                                         int samples_per_pitch) override;
-  /// Returns the bank used by prepare(), for estimators that use the templates themselves.
+  /// Returns the bank used by prepare(), for estimators that use the templates directly.
   [[nodiscard]] Result<std::shared_ptr<const TemplateBank>> bank(double size_samples, int samples_per_pitch);
 
  private:

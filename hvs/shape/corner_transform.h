@@ -34,8 +34,8 @@ struct SplitMatrix {
 using Two = double __attribute__((vector_size(16)));
 using TwoInMemory = double __attribute__((vector_size(16), aligned(8), may_alias));
 
-/// Returns out[j][i] = Re sum_b sum_k folded[b][k] exp(2 pi i (b j + k i) / n), n = `points`, over the n rows b and the
-/// first n columns k; j and i within `size`, periodic beyond n.
+/// Returns out[j][i] = Re sum_b sum_k folded[b][k] exp(2 pi i (b j + k i) / n), where n is `points`. The sums are over
+/// the n rows b and the first n columns k; j and i are within `size`, periodic beyond n.
 [[nodiscard]] cv::Mat1d corner_of_inverse(const SplitMatrix& folded, int points, cv::Size size);
 
 }  // namespace todbench

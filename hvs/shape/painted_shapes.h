@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shapes of uniform level that are painted one over another. They are represented by the edges at which the level
-// changes.
+// Shapes of uniform level that are painted over each other, represented by the edges at which the level changes.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -24,13 +23,13 @@ struct StepEdge {
   double step = 0;
 };
 
-/// Returns whether edges meet only at shared vertices and the area is not 0. False with fewer than three vertices or if
-/// a coordinate is not finite.
+/// Returns whether edges meet only at shared vertices and the area is not 0. Returns false with fewer than three
+/// vertices, or if a coordinate is not finite.
 [[nodiscard]] bool is_simple(const Polygon& polygon);
 
-/// Returns the visible edges of polygons that are painted in order over level 0. Edges are cut where they cross or
-/// touch another edge. Covered edges, and edges with the same level on both sides, are omitted. An edge shared by two
-/// polygons is returned once. Features below 1e-9 of the whole extent are lost. The computing time grows with the
+/// Returns the visible edges of polygons that are painted in order over level 0. Edges that cross or touch each other
+/// are cut at this point. Covered edges, and edges with the same level on both sides, are omitted. An edge shared by
+/// two polygons is returned once. Features below 1e-9 of the whole extent are lost. The computing time grows with the
 /// square of the number of edges.
 [[nodiscard]] std::vector<StepEdge> visible_edges(std::span<const PaintedPolygon> painted);
 

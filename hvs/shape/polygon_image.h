@@ -4,8 +4,8 @@
 //
 // The product is band-limited, so a sum over the lattice m / period represents the image exactly at every sampling
 // phase. There are only two approximations. First, the image is periodic: signal beyond one border appears at the
-// opposite border. For a diffraction-limited chain, this error decreases as period^-3. Second, if the filter is not
-// band-limited, it is cut off at the highest lattice frequency.
+// opposite border. For a diffraction-limited chain, this error decreases as period^-3. Second, a filter that is not
+// band-limited is cut off at the highest lattice frequency.
 #pragma once
 
 #include <complex>
@@ -28,8 +28,8 @@ class FilterTable {
   [[nodiscard]] const FrequencyLattice& lattice() const { return lattice_; }
   /// Returns the table: rows w = -band..band, columns u = 0..band.
   [[nodiscard]] const cv::Mat_<std::complex<double>>& values() const { return values_; }
-  /// Returns the number of columns of a row up to the last value that is not zero. It differs between rows, because the
-  /// cut-off of optics is a circle.
+  /// Returns the number of columns of a row up to the last value that is not zero. This number differs between rows,
+  /// because the cut-off of optics is a circle.
   [[nodiscard]] std::size_t extent(int row) const { return extents_[static_cast<std::size_t>(row)]; }
   /// Returns whether all values are real and bit-identical at w and -w.
   [[nodiscard]] bool even() const { return even_; }
@@ -53,7 +53,8 @@ class PolygonImage {
   PolygonImage(const Polygon& polygon, const FilterTable& filter);
 
   /// Returns the values at (first.x + i step, first.y + j step), i < columns, j < rows. Precondition: period / step is
-  /// a whole number. The computation needs one pass over the spectrum and a small sum, but no 2-D FFT of the fine grid.
+  /// a whole number. The computation takes one pass over the spectrum and a small sum, without a 2-D FFT of the fine
+  /// grid.
   [[nodiscard]] cv::Mat1d sample(cv::Point2d first, double step, cv::Size size) const;
 
   /// Returns the whole period at `per_unit` points per unit length. One inverse FFT computes all per_unit^2 sampling

@@ -19,17 +19,18 @@ struct FrequencyLattice {
 };
 
 /// Returns the Fourier transform of the polygon's indicator at frequency (u, w), in cycles per unit length: the
-/// integral of exp(-2 pi i (u x + w y)) over its area. It is a sum over edges with sinc factors. The relative error is
-/// about 1e-15 times the number of turns, also at the origin and for wave vectors perpendicular to an edge.
+/// integral of exp(-2 pi i (u x + w y)) over its area. The transform is a sum over edges with sinc factors. The
+/// relative error is about 1e-15 times the number of turns, also at the origin and for wave vectors perpendicular to an
+/// edge.
 [[nodiscard]] std::complex<double> polygon_spectrum(const Polygon& polygon, double u, double w);
 
 /// Returns the Fourier transform on a lattice: rows w = -band..band, columns u = 0..band. The other half plane follows
-/// by symmetry. Phase factors are separable and tabulated per row and column. The difference to the function for a
+/// by symmetry. Phase factors are separable and tabulated per row and column. The difference from the function for a
 /// single frequency is below 1e-13 of the area.
 [[nodiscard]] cv::Mat_<std::complex<double>> polygon_spectrum(const Polygon& polygon, const FrequencyLattice& lattice);
 
-/// Fourier transform on a lattice row by row, with separate real and imaginary parts, for callers that filter a row
-/// while it is in the cache. One thread at a time.
+/// Computes the Fourier transform on a lattice row by row, with separate real and imaginary parts. Use it to filter a
+/// row while the row is in the cache. One thread at a time.
 class PolygonSpectrumRows {
  public:
   PolygonSpectrumRows(const Polygon& polygon, FrequencyLattice lattice);

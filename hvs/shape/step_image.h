@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image of painted shapes after a filter, from the exact spectrum of their edges.
+// Image of painted shapes after a filter, computed from the exact spectrum of the edges.
 #pragma once
 
 #include <opencv2/core.hpp>

@@ -24,9 +24,9 @@ struct Dispersion {
   [[nodiscard]] double lower_limit(double probability) const;
 };
 
-/// Tests of the same answers for too much scatter (more) and for too little scatter (less). There are two expectations,
-/// one for clusters and one for independent trials. With clusters, each test uses the expectation that leads to the
-/// smaller number of findings.
+/// Tests of the same answers for too much scatter (more) and for too little scatter (less). The expected scatter can be
+/// computed for clusters or for independent trials. With clusters, each test uses the expectation that causes fewer
+/// findings.
 struct Dispersions {
   Dispersion more, less;
 };

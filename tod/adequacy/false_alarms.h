@@ -7,7 +7,7 @@ namespace todbench {
 /// Probabilities with which a test exceeds its limit by chance.
 struct FalseAlarms {
   double departure = 0, lapse = 0;
-  double scatter = 0;  ///< for too much scatter, and also for too little scatter
+  double scatter = 0;  ///< for each of two tests: too much scatter, too little scatter
 };
 
 }  // namespace todbench

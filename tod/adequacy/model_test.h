@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests of a fitted function against its own answers.
+// Tests of a fitted function against the answers to which it was fitted.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ namespace todbench {
 
 /// Result of the score test with the largest ratio of score to limit.
 struct Departure {
-  std::string towards;  ///< part of a sentence in reports: "towards the acuity form"
+  std::string towards;  ///< phrase for reports: "towards the acuity form"
   double score = 0;     ///< score in standard deviations
   /// Limit for this direction; the probability that any direction exceeds its limit by chance is
   /// FalseAlarms::departure.
@@ -38,16 +38,16 @@ struct ModelTest {
 /// Tests a fitted function in three ways. Score tests (Cox and Hinkley 1974, 9.3) examine departures towards the other
 /// form (one-sided, with half of the permitted probability), towards a different chance level, and towards a bend (both
 /// two-sided). A likelihood-ratio test examines a free lapse. The third test examines the scatter of the remaining
-/// residuals. For clustered data the variance of a score is the variance over clusters (Liang and Zeger 1986), at least
-/// the variance of independent trials, and Student's t is used. `free_fit`: fit of the same levels with a free lapse.
-/// Precondition: the verdict of `fit` is ok or extrapolated.
+/// residuals. For clustered data, the variance of a score is the variance over clusters (Liang and Zeger 1986), at
+/// least the variance of independent trials. The limits are then those of Student's t. `free_fit`: fit of the same
+/// levels with a free lapse. Precondition: the verdict of `fit` is ok or extrapolated.
 [[nodiscard]] ModelTest test_model(std::span<const Level> levels, const PsychometricFit& fit,
                                    const std::optional<PsychometricFit>& free_fit, const FitOptions& options,
                                    const FalseAlarms& probability);
 
-/// Returns whether a slope at the upper limit of its domain is significant. With few trials, the answers often form a
-/// perfect step by chance. Twice the gain in ln likelihood from half the largest slope to the largest slope is compared
-/// with the limit for `probability`.
+/// Returns whether a slope at the upper limit of its domain is significant. The test is needed because, with few
+/// trials, the answers often form a perfect step by chance. Twice the gain in ln likelihood from half the largest slope
+/// to the largest slope is compared with the limit for `probability`.
 [[nodiscard]] bool asks_for_steeper(std::span<const Level> levels, const PsychometricFit& fit,
                                     const FitOptions& options, double probability);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Thresholds by the direction of the triangles. Row or column noise, interlaced fields and a tilted lens affect the
-// answers to some directions only.
+// Thresholds by the direction of the triangles. Row or column noise, interlaced fields and a tilted lens affect only
+// the answers to some directions.
 #pragma once
 
 #include <optional>
@@ -11,11 +11,11 @@
 
 namespace todbench {
 
-/// Compares the answers at one contrast by the direction of the triangles in the picture. The threshold of each
-/// direction is computed from the function of the twin, which is shifted along ln size (one step of the
-/// quasi-likelihood estimate, twin_shape_estimate()). The axes (up and down, left and right) are compared within each
-/// combination of plate and mounting. The standard error is computed from the scatter over these combinations. Empty
-/// with fewer than three combinations, or if a combination has no answers to one of the directions.
+/// Compares the answers at one contrast by the direction of the triangles in the picture. For the threshold of each
+/// direction, the function of the twin is shifted along ln size (one step of the quasi-likelihood estimate,
+/// twin_shape_estimate()). The axes (up and down, left and right) are compared within each combination of plate and
+/// mounting. The standard error is computed from the scatter over these combinations. Empty with fewer than three
+/// combinations, or if a combination has no answers to one of the directions.
 [[nodiscard]] std::optional<Orientations> orientations(std::span<const Trial> trials, const ProportionTable& table);
 
 /// Returns a finding if the difference between the axes is significant (two-sided t test at 0.3 %) and above 2 %;

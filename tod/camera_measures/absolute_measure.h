@@ -21,17 +21,20 @@ namespace todbench {
 /// Options of measure_absolute().
 struct AbsoluteOptions {
   std::string plate;                   ///< name of the plate; its cut-out fills the picture
-  std::vector<double> temperatures_k;  ///< of the black body, at least three; presented in order and in reverse order
+  std::vector<double> temperatures_k;  ///< temperatures of the black body, at least three; presented in order and in
+                                       ///< reverse order
   int frames = 32;  ///< number of frames averaged at each temperature and each position of the source
-  /// Shift of the source by the stage, which separates the fixed patterns of camera and source. 0: not separated.
+  /// Distance by which the stage shifts the source, to separate the fixed patterns of camera and source. 0: not
+  /// separated.
   int shift_px = 8;
   double pixel_mm = 0;      ///< pixel pitch on the plate
   double pixel_aspect = 1;  ///< height of a pixel divided by its width, which is pixel_mm
   double source_u_k = 0;    ///< standard uncertainty of the expected temperature
-  /// Returns the temperature that the camera's own sensor reports, in degrees Celsius. May be null, or return empty.
+  /// Returns the temperature that the sensor inside the camera reports, in degrees Celsius. May be null, or return
+  /// empty.
   std::function<std::optional<double>()> camera_temperature_c{};
-  /// Returns the temperature that a correct camera shows for a temperature of the black body, through a collimator.
-  /// Null: both are equal.
+  /// Returns the temperature that a correct camera shows through a collimator, for a temperature of the black body.
+  /// Null: the two temperatures are equal.
   std::function<double(double black_body_k)> expected_k{};
 };
 
@@ -45,7 +48,7 @@ struct AbsoluteLevel {
   double difference_k = 0;
   Estimate pattern_k{};    ///< standard deviation of the fixed pattern without shading
   bool saturated = false;  ///< the camera saturated: the other values are not stated
-  /// Temperature of the camera according to its own sensor; empty: not reported.
+  /// Temperature of the camera according to the sensor inside the camera; empty: not reported.
   std::optional<double> camera_c{};
 };
 
@@ -59,20 +62,20 @@ struct AbsoluteMeasure {
   double u_k = 0;  ///< standard uncertainty of seen_k of a level, with `degrees_of_freedom`
   int degrees_of_freedom = 0;
   double source_u_k = 0;  ///< standard uncertainty of the expected temperature, as in the options
-  /// Straight line of the observed temperature as a function of the expected temperature: its slope, and its deviation
-  /// from the expected temperature at the middle of the range.
+  /// Straight line of the observed temperature as a function of the expected temperature: slope of the line, and
+  /// deviation of the line from the expected temperature at the middle of the range.
   Estimate slope{}, offset_k{};
   double nonlinearity_percent = 0;
   Estimate prnu_percent{};  ///< standard deviation of the responsivity over the pixels, without shading
   /// Fixed pattern at the middle temperature, separately for the camera and for the source. Empty: not separated.
   std::optional<Estimate> camera_pattern_k{}, source_pattern_k{};
-  /// Linear gradient across the picture, largest minus smallest value. The measurement cannot tell whether it comes
-  /// from the camera or from the source.
+  /// Linear gradient across the picture, largest minus smallest value. It may be due to the camera or to the source;
+  /// the measurement does not distinguish them.
   std::optional<double> undetermined_slope_k{};
   /// Temperatures of the lowest and the highest count, if the scale states them.
   std::optional<double> lowest_k{}, highest_k{};
   std::optional<double> dynamic_range_db{};  ///< 20 log10 of ((highest_k - lowest_k) / temporal noise of a pixel)
-  /// Half-width of the 95 % interval of dynamic_range_db, from the error of the noise.
+  /// Half-width of the 95 % interval of dynamic_range_db, due to the error of the noise.
   double dynamic_range_half_db = 0;
   std::vector<std::string> reasons{};  ///< reasons for absent values
 
@@ -86,7 +89,7 @@ struct AbsoluteMeasure {
   [[nodiscard]] Estimate ietd_k() const;
 };
 
-/// Shifts the source and sets its temperature. Returns when shift and temperature are reached.
+/// Shifts the source and sets its temperature. The function returns when shift and temperature are reached.
 using ShowTemperature = std::function<Result<PresentedTarget>(double temperature_k, cv::Point2d shift_mm)>;
 
 /// Measures the camera. Errors: those of `show` and of FrameTaker::average(); `invalid_input` (fewer than three

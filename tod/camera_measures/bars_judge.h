@@ -67,8 +67,8 @@ class BarsJudge {
   explicit BarsJudge(const MrtdOptions& options);
   Result<void> add_place(const PlateRectangle& target, const PlateRectangle& other, Place place,
                          const std::vector<AlternativeAspects>& alternatives);
-  /// Adds the scores of every observer for one interval to those of its level and set-up. `pattern`: scores of the
-  /// window in the frame, in kelvin.
+  /// Adds the scores of every observer for one interval to the scores of this level and set-up. `pattern`: scores of
+  /// the window in the frame, in kelvin.
   void decide(Place& place, bool target, const std::vector<float>& pattern, const ShownBars& shown);
   /// Keeps both windows of a frame for human observers. Bars above mrtd_cut_per_pitch have no threshold and are not
   /// kept.

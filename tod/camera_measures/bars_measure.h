@@ -30,7 +30,7 @@ struct BarsCtf {
   double angle_deg = 0;              ///< angle from the axis to the direction across the bars
   cv::Point2d middle_px{0, 0};       ///< centre of the group in the picture
   int pixels = 0;                    ///< number of pixels used for the profile
-  double noise_over_contrast = 0;    ///< noise of one pixel, from the residuals of the profile
+  double noise_over_contrast = 0;    ///< noise of one pixel divided by the contrast, from the residuals of the profile
   Estimate best, mean, worst;        ///< over the sampling phases
   int bars_separated_at_best = 1;    ///< 4 if every space is lower than both neighbouring bars
   double share_of_four = 0;          ///< share of the phases at which four bars are separated
@@ -50,20 +50,20 @@ struct PlateBarsCtf {
 /// pixels that are at least 3.5 pixels from the ends of the bars are samples of one profile along the normal. The
 /// profile consists of four bars with a common line spread: a cubic spline with knots every 0.15 pitch, fitted by least
 /// squares (BarsFit). The fitted profile is sampled once per pitch at 64 phases. Best, mean and worst modulation are
-/// computed from these samples. Phases that do not occur on the plate are interpolated, and no phase depends on a
-/// single pixel.
+/// computed from these samples. Phases that do not occur on the plate are interpolated. No phase depends on a single
+/// pixel.
 ///
 /// The contrast is the signal in the centres of the plate's rectangles minus the signal of the area that is more than 5
-/// pixels away from every cut-out. Light that the optics spread farther is corrected to first order: an MTF that begins
-/// as 1 - a f spreads a / (4 pi^2 r^3) at a distance r (Fourier pair). The value a is measured at the edges of the
-/// rectangles (plate_edges()), and the spread is summed over the drawing of the plate. The half-width of the interval
-/// of this correction is the whole correction, because a halo spreads light differently. Halos wider than the squares
-/// reduce the contrast of squares and bars equally and are not part of the CTF.
+/// pixels away from every cut-out. The contrast is corrected to first order for light that the optics spread farther:
+/// an MTF that begins as 1 - a f spreads a / (4 pi^2 r^3) at a distance r (Fourier pair). The value a is measured at
+/// the edges of the rectangles (plate_edges()), and the spread light is summed over the drawing of the plate. The
+/// half-width of the interval of this correction is the whole correction, because a halo spreads light differently.
+/// Halos wider than the squares reduce the contrast of squares and bars equally and are not part of the CTF.
 ///
 /// Standard deviation and bias are computed from 100 repetitions with simulated noise (`seed`) as large as the residual
-/// of the spline. There is a bias because the extremes of a noisy profile are too far apart. The result is corrected
-/// for the bias. The interval includes the bias and the difference to a spline with knots every 0.2 pitch. `where` as
-/// for plate_edges(). Errors: `calibration` (plate not in the picture, or its squares have no contrast),
+/// of the spline. The bias arises because the extremes of a noisy profile are too far apart. The result is corrected
+/// for this bias. The interval includes the bias and the difference from a spline with knots every 0.2 pitch. `where`
+/// as for plate_edges(). Errors: `calibration` (plate not in the picture, or its squares have no contrast),
 /// `invalid_input` (plate without bars or without rectangles).
 [[nodiscard]] Result<PlateBarsCtf> plate_bars_ctf(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                   const Registration& where, std::uint64_t seed = 1);

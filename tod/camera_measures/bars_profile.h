@@ -23,9 +23,9 @@ class BarsProfile {
   std::vector<double> coefficients_, sums_;  ///< sums_[i]: sum of the coefficients before i
 };
 
-/// Least-squares fit of ground level and line spread to samples at fixed positions. A small penalty on the third
-/// differences of the line spread (1e-6 of the mean diagonal) determines components of the line spread that have no
-/// effect on the profile of four bars. Immutable, thread-safe.
+/// Least-squares fit of ground level and line spread to samples at fixed positions. Some components of the line spread
+/// have no effect on the profile of four bars. A small penalty on the third differences of the line spread (1e-6 of the
+/// mean diagonal) determines these components. Immutable, thread-safe.
 class BarsFit {
  public:
   /// Prepares the fit. `places`: positions of the samples. Positions, bar width, middle and knots have the same unit.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Physical measures of a camera, measured with the frame source and the target of its TOD measurement.
+// Physical measures of a camera, measured with the frame source and the target of the TOD measurement.
 #pragma once
 
 #include <cstdint>
@@ -44,7 +44,7 @@ struct CameraMeasuresOptions {
   bool geometry = false;
   /// Measures the signal transfer with `transfer_steps_k`.
   bool transfer = false;
-  /// Contrasts of the signal transfer, at least three. The first plate is located at the largest.
+  /// Contrasts of the signal transfer, at least three. The first plate is located at the largest contrast.
   std::vector<double> transfer_steps_k;
   /// Contrasts at which pictures of the smallest triangles are taken. Empty: none.
   std::vector<double> triangles_k{};
@@ -84,8 +84,8 @@ struct CameraMeasuresOptions {
   std::optional<MrtdOptions> mrtd{};
   /// Options of the automatic gain, measured with contrast steps of the first plate. Empty: not measured.
   std::optional<ResponseOptions> gain_control{};
-  /// Options of the TOD measurement. Its plates, numbers of averaged frames, corrections, timeouts and integrity limits
-  /// are used. The first plate is shown in identity mounting.
+  /// Options of the TOD measurement. Plates, numbers of averaged frames, corrections, timeouts and integrity limits are
+  /// taken from these options. The first plate is shown in identity mounting.
   MeasurementOptions measurement;
 };
 
@@ -175,7 +175,8 @@ struct CtfMeasure {
   /// Result of plate_bars_ctf().
   PlateBarsCtf bars;
 
-  /// Returns the group on this axis with the frequency nearest to the requested one; null if this axis has no group.
+  /// Returns the group on this axis with the frequency nearest to the requested frequency; null if this axis has no
+  /// group.
   [[nodiscard]] const BarsCtf* stated(EdgeAxis axis) const;
 };
 
@@ -267,10 +268,10 @@ struct CameraMeasures {
   /// One sentence for each absent measure.
   std::vector<std::string> reasons{};
 
-  /// Returns the variance of the temporal noise of a pixel in K^2 on the camera's scale, with its 95 % interval.
+  /// Returns the variance of the temporal noise of a pixel, in K^2 on the camera's scale, with the 95 % interval.
   [[nodiscard]] std::optional<ComponentEstimate> temporal_variance_k2() const;
-  /// Returns the temporal noise divided by the slope of the signal transfer. Empty if one of them is absent, or if the
-  /// noise is below half a count and cannot be measured.
+  /// Returns the temporal noise divided by the slope of the signal transfer. Empty if noise or slope is absent, or if
+  /// the noise is below half a count and cannot be measured.
   [[nodiscard]] std::optional<double> netd_k() const;
   /// Returns the temporal noise divided by the slope for an extended source (SourceSizeMeasure::slope()), with its 95 %
   /// interval.
@@ -281,7 +282,7 @@ struct CameraMeasures {
 };
 
 /// Starts the source, takes all requested measures and stops the source. If a measure fails, `reasons` states the
-/// cause, and the other measures continue. Errors: `interrupted` (stop requested). `host` is used only during the call.
+/// cause, and the next measures are taken. Errors: `interrupted` (stop requested). `host` is used only during the call.
 [[nodiscard]] Result<CameraMeasures> measure_camera(FrameSource& source, Target& target,
                                                     const CameraMeasuresOptions& options, RunController& host,
                                                     std::stop_token stop);

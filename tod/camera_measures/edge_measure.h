@@ -23,11 +23,11 @@ struct EdgeMtf {
   double angle_deg = 0;                     ///< angle from the axis to the normal of the edge, mean of the sides
   double noise_over_step = 0;               ///< largest value among the sides
   std::vector<double> frequency_per_pitch;  ///< 0 ... 1, along the normal
-  /// Mean of the sides, and limits of its 95 % interval, which is not symmetric. low = 0: not known.
+  /// Mean of the sides, and limits of the 95 % interval of the mean, which is not symmetric. low = 0: not known.
   std::vector<double> mtf, low, high;
   double widest_halo_pitch = 0;                    ///< largest sigma of the halos that are part of the MTF
   double halo_allowance = 0;                       ///< largest share of the step that the interval allows for halos
-  double wide_halo_least = 0, wide_halo_most = 0;  ///< largest values among the sides (SlantedEdge)
+  double wide_halo_least = 0, wide_halo_most = 0;  ///< largest limits among the sides (SlantedEdge)
   std::optional<double> mtf50_per_pitch{};         ///< lowest frequency at which the MTF is 0.5
   /// MTF of a simulated sensor in closed form, at the same frequencies and angle; empty for a real camera.
   std::vector<double> model{};
@@ -47,12 +47,12 @@ struct PlateEdges {
 
 /// Locates the plate in the picture by its rectangles (normalised correlation, any sign of contrast). Computes the MTF
 /// of a region round the middle of each nearly vertical or nearly horizontal side (slanted_edge()), and averages
-/// opposite sides. The tails of the MTF are fitted to the plate round each rectangle (plate_tails()); their
-/// contribution to the interval is common to all sides of the rectangle. The lower and the upper half-width of the
+/// opposite sides. The tails of the MTF are fitted to the plate round each rectangle (plate_tails()). The contribution
+/// of the tails to the interval is common to all sides of the rectangle. The lower and the upper half-width of the
 /// interval are each at least half of the difference between the measured sides.
 ///
 /// `where`: mapping from millimetres on the plate to pixels, correct except for a shift. It may be the registration of
-/// another plate in the same holder. Errors: `calibration` (rectangles not in the picture), `invalid_input` (plate
+/// a different plate in the same holder. Errors: `calibration` (rectangles not in the picture), `invalid_input` (plate
 /// without rectangles).
 [[nodiscard]] Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                              const Registration& where, const TailBounds& bounds);

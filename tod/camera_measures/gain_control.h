@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Automatic gain of a camera: levels and gain as functions of the contrast of the scene, and settling time of the
-// level.
+// Automatic gain of a camera: levels and gain as functions of the scene contrast, and settling time of the level.
 #pragma once
 
 #include <optional>
@@ -40,7 +39,7 @@ struct GainControlMeasure {
   /// Returns the gain at the largest contrast divided by the gain at the smallest contrast, with the 95 % interval from
   /// the errors of both gains. A fixed pattern adds the same counts to both contrasts. If the contrasts have different
   /// signs, the pattern increases one gain and decreases the other, so the relative half-widths are added. Otherwise
-  /// they are combined as the root of the sum of squares.
+  /// the result is the root of the sum of their squares.
   [[nodiscard]] Estimate ratio() const;
 };
 

@@ -40,7 +40,7 @@ struct KeptBars {
 /// Keeps the windows of the first frames for each group of bars or spot, each contrast and each set-up.
 class BarsKeeper {
  public:
-  /// `frames`: number kept for each contrast of each set-up; 0: none.
+  /// `frames`: number of frames kept for each contrast of each set-up; 0: none.
   explicit BarsKeeper(int frames) : frames_(frames) {}
   [[nodiscard]] bool keeps() const { return frames_ > 0; }
   void add(KeptPicture picture);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MRTD of a camera with its own target: the template observer discriminates four bars from five, at contrasts of both
-// polarities.
+// Measures the MRTD of a camera with a plate of bars. The template observer discriminates four bars from five, at
+// contrasts of both polarities.
 #pragma once
 
 #include <cstdint>
@@ -48,7 +48,7 @@ struct MrtdPoint {
   EdgeAxis axis = EdgeAxis::x;
   double frequency_per_pitch = 0;  ///< frequency of the four bars in the picture; 0: a spot
   double size_px = 0;              ///< side of the spot; 0: bars
-  /// Contrast for 75 % correct answers at each polarity; the negative one is below 0.
+  /// Contrasts for 75 % correct answers at each polarity; the contrast of negative polarity is below 0.
   std::optional<double> positive_k{}, negative_k{};
   std::optional<double> threshold_k{};  ///< half of (positive_k - negative_k)
   Interval ci95{};                      ///< interval of threshold_k, by jackknife over the set-ups
@@ -77,14 +77,14 @@ struct MrtdMeasure {
   std::vector<std::string> reasons{};  ///< sentences about bars and spots that could not be judged
   KeptBars kept{};                     ///< windows for human observers; empty unless kept_frames is above 0
 
-  /// Returns the bars on this axis with the frequency nearest to the requested one; null if there are none.
+  /// Returns the bars on this axis with the frequency nearest to the requested frequency; null if there are none.
   [[nodiscard]] const MrtdPoint* stated(EdgeAxis axis) const;
-  /// Returns the spot with the side nearest to the requested one; null if there is none.
+  /// Returns the spot with the side nearest to the requested side; null if there is none.
   [[nodiscard]] const MrtdPoint* stated_spot() const;
 };
 
 /// Highest frequency of an MRTD: the Nyquist frequency with a margin for the error of the scale. Above the Nyquist
-/// frequency a model observer still discriminates alias patterns of bars, but a person does not see four bars.
+/// frequency, a model observer still discriminates the alias patterns of the bars, but a person does not see four bars.
 inline constexpr double mrtd_cut_per_pitch = 0.505;
 
 /// The two alternatives of Bijl and Valeton: a group of four bars and a group of five bars in squares of the same size.
@@ -104,26 +104,27 @@ struct BarPair {
 using ShowState = std::function<Result<PresentedTarget>(const TargetState&, const std::function<void()>& work)>;
 
 /// A state that the measurement shows. In each mounting, the first state has the contrast at which the plate is
-/// located. Then all contrasts follow at the set-ups of this mounting, from large to small and with both polarities.
+/// located. The next states show all contrasts at the set-ups of this mounting, from large to small and with both
+/// polarities.
 struct MrtdPresentation {
   TargetState state;
   int set_up = 0;         ///< negative: the plate is located
   std::size_t level = 0;  ///< index in MrtdOptions::contrasts_k
 };
-/// Lists the presentations. `pixel_mm`: size of a pixel on the plate.
+/// Returns the presentations in order. `pixel_mm`: size of a pixel on the plate.
 [[nodiscard]] std::vector<MrtdPresentation> mrtd_presentations(const MrtdOptions& options, double pixel_mm);
 
 /// Measures the MRTD. A decision compares two intervals: one with four bars, and one with five bars in a square of the
-/// same size and with the same contrast. The observer states which interval had four bars, so there is no response bias
+/// same size and with the same contrast. The observer states which interval had four bars, which avoids a response bias
 /// (Bijl and Valeton 1999). Every frame shows both groups. All pairs of frames are judged, as in virtual_mrtd(). The
-/// threshold of each polarity is computed from a fitted function of contrast (fit_contrast()). Half of the difference
-/// of the two thresholds does not contain the offset of the target. The interval is computed by jackknife over the
-/// set-ups, with Student's t. Spots are compared with an empty part of the plate.
+/// threshold of each polarity is computed from a fitted function of contrast (fit_contrast()). The result is half of
+/// the difference of the two thresholds, in which the offset of the target cancels. The interval is computed by
+/// jackknife over the set-ups, with Student's t. Spots are compared with an empty part of the plate.
 ///
-/// `where`: registration of a plate in the same holder, in identity mounting. The plate itself is located to a whole
-/// pixel, and the observer searches for the remaining shift. An observer of limited efficiency enlarges the noise of
-/// the camera. This noise is measured in the frames in which the plate is located. Errors: those of target and camera,
-/// `calibration` (plate not in the picture), `invalid_input` (no pair of groups that can be judged).
+/// `where`: registration of a plate in the same holder, in identity mounting. The plate of the MRTD is located to a
+/// whole pixel, and the observer searches for the remaining shift. An observer of limited efficiency enlarges the noise
+/// of the camera. This noise is measured in the frames in which the plate is located. Errors: those of target and
+/// camera, `calibration` (plate not in the picture), `invalid_input` (no pair of groups that can be judged).
 [[nodiscard]] Result<MrtdMeasure> measure_mrtd(FrameTaker& taker, const ShowState& show, const Registration& where,
                                                const MrtdOptions& options, std::stop_token stop);
 

@@ -27,7 +27,7 @@ struct NoiseMeasure {
   std::optional<double> lag1_correlation{};
   std::optional<double> noise_counts{};  ///< temporal noise in steps of the camera's counts; empty: not known
   cv::Rect field{};                      ///< part of the frame that the plate covers
-  cv::Mat1d pixel_sd_k{};                ///< temporal noise of each pixel; changes of whole frames are removed
+  cv::Mat1d pixel_sd_k{};                ///< temporal noise of each pixel, after removal of changes of whole frames
   cv::Mat1d pattern_k{};                 ///< mean frame minus its mean and shading
 };
 

@@ -14,7 +14,8 @@
 
 namespace todbench {
 
-/// A zone in fractions of the frame, from the upper left corner. It contains the pixels whose centres are inside.
+/// A zone in fractions of the frame, from the upper left corner. It contains the pixels whose centres are inside these
+/// limits.
 struct ZoneArea {
   std::string name;
   double left = 0, top = 0, right = 1, bottom = 1;

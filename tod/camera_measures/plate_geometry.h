@@ -21,7 +21,7 @@ struct GeometryPlace {
 };
 
 /// Model of the image of a plane: a homography (8 parameters), followed by radial distortion about the middle c of the
-/// picture, q = c + (p - c)(1 + k r^2 / R^2). r is the distance of p from c, and R is half of the diagonal of the
+/// picture, q = c + (p - c)(1 + k r^2 / R^2). Here r is the distance of p from c, and R is half of the diagonal of the
 /// picture (Brown 1966, first term).
 struct PlateGeometry {
   /// Scale on the plate along the picture's rows and columns, at the middle of the plate, without distortion.
@@ -39,12 +39,12 @@ struct PlateGeometry {
   std::vector<GeometryPlace> places;
 };
 
-/// Locates each triangle separately (fit_shift()), starting at its position according to `where`. Uses triangles of at
+/// Locates each triangle separately (fit_shift()), starting at the position according to `where`. Uses triangles of at
 /// least 1.5 px that exceed the noise. Fits nine parameters by least squares. The error of each position consists of
-/// its noise and of 0.004 px for the shift caused by blur and sampling. Intervals are computed from the residuals with
-/// Student's t. If the noise of the triangle positions gives a wider interval, that one is used. A triangle with a
-/// residual above six times the median is excluded. Errors: `calibration` (fewer than ten triangles, or triangles that
-/// do not distinguish distortion from perspective).
+/// the noise of the position and of 0.004 px for the shift caused by blur and sampling. Intervals are computed from the
+/// residuals with Student's t, and from the noise of the triangle positions. The wider interval is used. A triangle
+/// with a residual above six times the median is excluded. Errors: `calibration` (fewer than ten triangles, or
+/// triangles that do not distinguish distortion from perspective).
 [[nodiscard]] Result<PlateGeometry> plate_geometry(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                    const Registration& where);
 

@@ -16,7 +16,8 @@ namespace todbench {
 
 /// Signal whose response to the steps is evaluated.
 enum class StepSignal {
-  contrast,  ///< mean of the pixels that change with the target minus mean of the others: response of the detector
+  contrast,  ///< mean of the pixels that change with the target minus mean of the other pixels: response of the
+             ///< detector
   surround,  ///< level round the target; it changes with the contrast only if the camera has an automatic gain
 };
 
@@ -27,7 +28,7 @@ struct ResponseOptions {
   int steps = 16;            ///< number of steps, alternately up and down
   int frames = 24;           ///< number of frames recorded after the target has reported the end of a step
   int contrast_frames = 16;  ///< number of frames averaged to find the pixels that change
-  /// Settling time of the contrast of the target; empty: the target must step instantly.
+  /// Settling time of the contrast of the target. Empty: a target that steps instantly is required.
   std::optional<double> settling_s{};
   StepSignal signal = StepSignal::contrast;
 };

@@ -14,12 +14,12 @@
 
 namespace todbench {
 
-/// Signal in the middle of one aperture or opaque spot, divided by the signal in the middle of the reference aperture.
+/// Signal in the middle of an aperture or opaque spot, divided by the signal in the middle of the reference aperture.
 struct SourceSizePoint {
   std::string place;   ///< name of the aperture, or of the ring round the spot
   bool spot = false;   ///< an opaque spot (inverse method); otherwise an aperture (direct method)
   double size_px = 0;  ///< side of the square
-  Estimate ratio;      ///< ratio of these signals; without spread of light 1 for an aperture and 0 for a spot
+  Estimate ratio;      ///< ratio of these signals; without spread of light it is 1 for an aperture and 0 for a spot
   double fitted = 0;   ///< ratio according to the fitted tails
   double model = -1;   ///< ratio for a simulated sensor; negative: not known
 };
@@ -36,7 +36,8 @@ struct SourceSize {
   std::vector<Estimate> ratio{};
   double chi2 = 0;             ///< chi-square of the points relative to the fitted tails
   int degrees_of_freedom = 0;  ///< number of points
-  /// True: p of chi2 is above 0.001. False: the interval of `ratio` includes the largest deviation of a point.
+  /// True: the p value of chi2 is above 0.001. False: the interval of `ratio` includes the largest deviation of a
+  /// point.
   bool consistent = true;
 
   /// Returns the share of the signal that a square source of side `side_px` loses relative to the reference.
@@ -49,15 +50,15 @@ struct SourceSize {
 /// fixed pattern and uniform drift. The difference of `before` and `after` determines the noise.
 struct SourcePictures {
   cv::Mat1d before, lit, after;
-  /// Temperature of the plate at `lit` minus its mean at `before` and `after`, divided by the contrast; temperature and
-  /// contrast as reported by the target. A radiator heats the plate in front of it, which increases the signal of the
-  /// whole picture. 0: not reported.
+  /// Temperature of the plate at `lit` minus its mean at `before` and `after`, divided by the contrast. Temperature and
+  /// contrast are those that the target reports. The radiator heats the plate, which increases the signal of the whole
+  /// picture. 0: not reported.
   double plate_rise = 0;
 };
 
 /// Locates the plate by its rectangles and measures the signal in the middle of every aperture and spot (direct and
 /// inverse method). Fits the tails (plate_tails()) round the reference, which is the largest rectangle. Rectangles with
-/// the names "ring NAME: PART" are the parts of a ring; the middle of the ring is a spot.
+/// names of the form "ring NAME: PART" are the parts of a ring; the middle of the ring is a spot.
 ///
 /// Errors: `calibration` (rectangles not in the picture, a reference without signal), `invalid_input` (plate without
 /// two apertures).

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Times of frames: rate, jitter and gaps. Latency, measured with a stage that uses the clock of the camera.
+// Timing of a camera: frame rate, jitter and gaps, and the latency, which is measured with a stage that uses the clock
+// of the camera.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +38,7 @@ struct TimingMeasure {
   std::uint64_t longest_gap = 0;  ///< largest number of successive lost frames
 };
 
-/// Returns the timing of frames, which are in the order of their arrival. Errors: `invalid_input` (fewer than ten
+/// Returns the timing of frames. The frames must be in the order of arrival. Errors: `invalid_input` (fewer than ten
 /// frames, times that do not increase).
 [[nodiscard]] Result<TimingMeasure> frame_timing(std::span<const FrameTimes> times);
 
@@ -56,8 +57,8 @@ struct LatencyMeasure {
   double speed_mm_s = 0;
   std::vector<double> runs_ms{};    ///< latency in each run
   std::vector<double> frames_ms{};  ///< latency in each frame of the runs
-  /// Time stamp of a frame minus the time at which the target was at the position that the frame shows. Includes the
-  /// time constant of the detector and half of its exposure. Positive: the frame is late.
+  /// Time stamp of a frame minus the time at which the target was at the position shown in the frame. It includes the
+  /// time constant of the detector and half of the exposure. Positive: the frame is late.
   Estimate latency_ms{};
 };
 

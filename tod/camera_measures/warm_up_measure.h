@@ -18,7 +18,8 @@ namespace todbench {
 /// Options of measure_warm_up().
 struct WarmUpOptions {
   double duration_s = 600;         ///< duration of the observation, > 0
-  double start_s = 0;              ///< time from power-on to the first image; all times are measured from power-on
+  double start_s = 0;              ///< time from power-on to the first image; all times of the result are measured from
+                                   ///< power-on
   double frame_rate_hz = 0;        ///< frame rate that the camera states; 0: not stated
   double stable_k_per_min = 0.05;  ///< drift below which the level is stable, > 0
 };
@@ -45,7 +46,7 @@ struct WarmUp {
   /// Drift during the longest interval without a correction; empty if the fit failed, and `reasons` contains the
   /// reason.
   std::optional<DriftLaw> law{};
-  /// Time after which the drift of the level is below the limit. Empty: the drift stays above the limit during the
+  /// Time after which the drift of the level stays below the limit. Empty: the limit is exceeded until the end of the
   /// observation, or there is no law.
   std::optional<double> stable_s{};
   std::optional<TemperatureDrift> by_temperature{};

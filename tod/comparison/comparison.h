@@ -11,11 +11,11 @@
 
 namespace todbench {
 
-/// Verdict of a comparison. equivalent: the 90 % interval of the ratio lies inside the margin. different: the interval
-/// does not lie inside the margin, and p_difference < 0.05. inconclusive: all other cases; also if a threshold or a
-/// side of an interval is missing, or if a value is not fit for a decision. A significant difference that is smaller
-/// than the margin has the verdict equivalent. With enough trials any small difference is significant; the margin
-/// states which differences matter.
+/// Verdict of a comparison. `equivalent`: the 90 % interval of the ratio lies inside the margin. `different`: the
+/// interval does not lie inside the margin, and p_difference < 0.05. `inconclusive`: all other cases. The verdict is
+/// also inconclusive if a threshold or a side of an interval is missing, or if a value is not fit for a decision. A
+/// significant difference that is smaller than the margin has the verdict `equivalent`: with enough trials any small
+/// difference is significant, and the margin states which differences matter.
 enum class ComparisonVerdict { equivalent, different, inconclusive };
 [[nodiscard]] std::string_view to_string(ComparisonVerdict verdict);
 
@@ -29,7 +29,7 @@ struct ComparisonOptions {
   bool b_shown_contrasts_of_a = false;
 };
 
-/// Ratio of a camera to its twin at one contrast, from common phases (paired_ratio.h).
+/// Ratio of the acuities of a camera and its twin at one contrast, from common phases (paired_ratio.h).
 struct RatioOfPairs {
   double ratio = 1;  ///< acuity of A divided by that of B
   Interval ci95{}, ci90{};
@@ -46,8 +46,8 @@ struct RatioOfPairs {
 
 /// One contrast. The ratio is acuity of A divided by acuity of B (= S75 of B / S75 of A). Its intervals combine the
 /// inflated profile intervals of both thresholds on the log scale, separately for each side (method of variance
-/// estimates recovery, Zou and Donner 2008). If a side of the interval of a threshold is open, the side of the ratio
-/// that depends on it is missing.
+/// estimates recovery, Zou and Donner 2008). If a side of the interval of a threshold is open, the corresponding side
+/// of the interval of the ratio is missing.
 struct ComparisonPoint {
   double set_delta_t_k = 0;
   double delta_t_a_k = 0, delta_t_b_k = 0;
@@ -63,7 +63,7 @@ struct ComparisonPoint {
   std::optional<double> p_equivalence{};
   double margin_percent = 0;
   ComparisonVerdict verdict = ComparisonVerdict::inconclusive;
-  /// True if the threshold of A or of B is not fit for a decision, or if the functions of the two differ. All verdicts
+  /// True if the threshold of A or of B is not fit for a decision, or if the functions of A and B differ. All verdicts
   /// of this point, including that of the paired ratio, are then inconclusive.
   bool withheld = false;
   /// Paired ratio. If it is present, it determines the verdict. Empty if the curves do not have the same phases.
@@ -73,8 +73,8 @@ struct ComparisonPoint {
 /// Result of compare().
 struct Comparison {
   std::vector<ComparisonPoint> points;
-  /// Different if any point is different; otherwise inconclusive if any point is inconclusive; otherwise equivalent.
-  /// Uses the paired ratios if there are any.
+  /// `different` if any point is different; otherwise `inconclusive` if any point is inconclusive; otherwise
+  /// `equivalent`. Uses the verdicts of paired ratios if they are present.
   ComparisonVerdict verdict = ComparisonVerdict::inconclusive;
   /// Findings that make a threshold of either curve unfit, and findings against the comparison of the two curves.
   /// Empty: not examined (records of earlier versions).
@@ -92,11 +92,11 @@ void add_paired(Comparison& comparison, std::size_t point, const RatioOfPairs& p
 /// Returns whether the verdict of every point is determined by a paired ratio.
 [[nodiscard]] bool decided_by_pairs(const Comparison& comparison);
 
-/// Returns a copy of the comparison. At each point with a paired ratio, the paired ratio and its values replace the
+/// Returns a copy of the comparison. At each point with a paired ratio, the values of the paired ratio replace the
 /// unpaired values.
 [[nodiscard]] Comparison as_decided(Comparison comparison);
 
-/// Likelihood-ratio comparison of two data sets at one contrast, with a common slope or separate slopes. Assumes
+/// Likelihood-ratio comparison of two data sets at one contrast, with a common slope or separate slopes. It assumes
 /// independent trials.
 struct ThresholdTest {
   double lr = 0;  ///< 2 (ll1 - ll0), chi-square with one degree of freedom
@@ -116,9 +116,10 @@ enum class SlopeModel { shared, separate };
                                                     const FitOptions& options);
 
 /// Compares the points of two curves that have the same set contrast. Two contrasts match if they agree within 0.5 %
-/// and each is the nearest contrast to the other. If the curves are exchanged, the ratios are inverted and the verdicts
-/// do not change. A point is inconclusive if the threshold of either curve is unfit. All points are inconclusive if
-/// both curves come from the same answers. Errors: `invalid_input` (no common contrast, or different observers).
+/// and no other contrast of either curve is nearer. If the curves are exchanged, the ratios are inverted and the
+/// verdicts do not change. A point is inconclusive if the threshold of either curve is unfit. All points are
+/// inconclusive if both curves come from the same answers. Errors: `invalid_input` (no common contrast, or different
+/// observers).
 [[nodiscard]] Result<Comparison> compare(const TodCurve& a, const TodCurve& b, const ComparisonOptions& options);
 
 }  // namespace todbench

@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Number of trials of a size and its expected share of correct answers.
+/// Number of trials at a size, and expected share of correct answers at this size.
 struct PlannedLevel {
   double size = 0;                ///< > 0, any unit
   double trials = 0;              ///< >= 0, may be fractional
@@ -23,8 +23,8 @@ struct ExpectedFit {
   double threshold = 0, slope = 0, trials = 0;
   double se_ln_threshold = 0;  ///< standard error from the information of the expected counts
 };
-/// Fits the expected counts. Errors: `invalid_input` (a level out of range, or expected answers without a threshold;
-/// the message contains the verdict).
+/// Fits the expected counts. Errors: `invalid_input` (a level out of range, or expected answers without a threshold,
+/// with the verdict in the message).
 [[nodiscard]] Result<ExpectedFit> expected_fit(std::span<const PlannedLevel> design, const FitOptions& options);
 
 /// Returns the design with sizes and trials of `totals` and the proportions of a psychometric function.
@@ -33,8 +33,8 @@ struct ExpectedFit {
 
 /// Returns the probability that two one-sided tests at 5 % find two acuities equivalent within `margin_percent` (ratio
 /// inside [1/(1+m), 1+m]). `true_ln_ratio`: true value of the logarithm of their ratio; `se_ln_ratio` > 0: standard
-/// error of its estimate. The result is exact for normally distributed estimates (Schuirmann 1987). It is 0 if the 90 %
-/// interval is wider than the margin.
+/// error of the estimate of this logarithm. The result is exact for normally distributed estimates (Schuirmann 1987).
+/// It is 0 if the 90 % interval is wider than the margin.
 [[nodiscard]] double equivalence_power(double se_ln_ratio, double margin_percent, double true_ln_ratio);
 
 /// One contrast of a planned comparison.
@@ -49,7 +49,8 @@ struct PlannedComparison {
 struct ComparisonOutlook {
   double margin_percent = 0;
   double power = 0;  ///< probability that every contrast is found equivalent, for independent contrasts
-  /// Factor by which all numbers of trials must be multiplied for a power of 80 %. At most 1: the plan is sufficient.
+  /// Factor by which all numbers of trials must be multiplied for a power of 80 %. If it is at most 1, the plan is
+  /// sufficient.
   double trials_factor = 0;
   /// Trials of A per contrast for a power of 80 %, largest value over the contrasts, rounded up.
   double trials_needed_a = 0;

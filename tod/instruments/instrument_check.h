@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks whether an instrument agrees with its table. Commands and queries are sent one after another.
+// Checks whether an instrument agrees with its table. Commands and queries are sent one at a time.
 #pragma once
 
 #include <stop_token>

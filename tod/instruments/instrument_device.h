@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A black body and a plate stage, controlled by their tables. Numbers are in K and mm; plates are identified by name.
+// A black body and a plate stage, controlled by command tables. Numbers are in K and mm; plates are identified by name.
 #pragma once
 
 #include <array>
@@ -41,7 +41,7 @@ class InstrumentDevice {
   std::string role_, endpoint_;
   ScpiClientOptions options_;
   InstrumentTable table_;
-  std::optional<ScpiClient> client_;  ///< kept after the connection is closed, because it stores the identity
+  std::optional<ScpiClient> client_;  ///< kept after the connection is closed, because the client stores the identity
 };
 
 /// Values reported by a black body.
@@ -70,8 +70,8 @@ class BlackBodyDevice : public InstrumentDevice {
   /// has an absolute set-point.
   [[nodiscard]] Result<std::array<double, 2>> absolute_limits(const std::stop_token& stop);
   [[nodiscard]] Result<void> command_absolute(double temperature_k, const std::stop_token& stop);
-  /// Reads the temperature of the radiator. Errors: those of temperature(), and `invalid_input` if the value is so far
-  /// below the coldest set-point that its unit must be degrees Celsius.
+  /// Reads the temperature of the radiator. Errors: those of temperature(), and `invalid_input` if the value is far
+  /// below the coldest set-point, because its unit is then degrees Celsius.
   [[nodiscard]] Result<double> radiator(double coldest_k, const std::stop_token& stop);
 
  private:
@@ -91,7 +91,7 @@ class StageDevice : public InstrumentDevice {
   using InstrumentDevice::InstrumentDevice;
   [[nodiscard]] Result<StageLimits> limits(const std::stop_token& stop);
   [[nodiscard]] bool holds(Mounting mounting) const;
-  /// Commands those of plate, mounting and position that differ from the set-points.
+  /// Commands plate, mounting and position, if they differ from the set-points.
   [[nodiscard]] Result<void> command(const TargetState& state, const std::stop_token& stop);
   /// Reads plate, mounting and position. Values that the stage does not report are copied from `asked`.
   [[nodiscard]] Result<TargetState> read(const TargetState& asked, const std::stop_token& stop);

@@ -19,7 +19,7 @@ struct InstrumentAddress {
   enum class Kind { tcp, serial, vxi11 };
   Kind kind = Kind::tcp;
   std::string host;
-  std::uint16_t port = 0;  ///< for VXI-11, 0: the port mapper of the host is queried
+  std::uint16_t port = 0;  ///< 0 for VXI-11: the port mapper of the host is queried
   std::string device;      ///< path of a serial port; for VXI-11 the logical instrument, for example "inst0"
 };
 
@@ -36,8 +36,8 @@ class InstrumentLine {
   [[nodiscard]] virtual Result<void> send(std::string_view bytes, TimePoint deadline, const std::stop_token& stop) = 0;
   /// Returns the received bytes, at least one. Errors as send().
   [[nodiscard]] virtual Result<std::string> receive(TimePoint deadline, const std::stop_token& stop) = 0;
-  /// Returns true if a query must be answered before the next query is sent. The next query would otherwise cancel it
-  /// (IEEE 488.2, 6.3.2.3: INTERRUPTED).
+  /// Returns true if a query must be answered before the next query is sent. Otherwise the next query would cancel the
+  /// first query (IEEE 488.2, 6.3.2.3: INTERRUPTED).
   [[nodiscard]] virtual bool one_at_a_time() const { return false; }
 };
 

@@ -33,7 +33,7 @@ inline constexpr std::array serial_bauds{1200, 2400, 4800, 9600, 19200, 38400, 5
 struct InstrumentSpeech {
   /// Time at which the error query is sent.
   enum class ErrorsAsked {
-    with_command,   ///< together with each command and query; the answer is received before the error report
+    with_command,   ///< with each command and query; the answer is received before the error report
     after_command,  ///< after the answer to a query
   };
   std::string ending = "\n";               ///< line end after each command
@@ -54,7 +54,7 @@ struct InstrumentSpeech {
   /// Answers to the error query that mean no error. Empty: the answer 0,"..." means no error (SCPI-99 volume 1, 21.8).
   std::vector<std::string> no_error;
   std::string acknowledgement;        ///< answer to a command that is not a query; empty: none
-  std::vector<std::string> refusals;  ///< an answer that begins with one of these texts is a refusal
+  std::vector<std::string> refusals;  ///< an answer that begins with any of these texts is a refusal
 };
 
 /// A unit of the file. Value in the units of this program = value in this unit * scale + offset.
@@ -69,11 +69,11 @@ struct InstrumentUnit {
 /// Returns the units of positions, in mm: "mm", "um", "m", "in".
 [[nodiscard]] std::vector<InstrumentUnit> length_units();
 
-/// Queries for numbers: one query for all numbers, or one for each.
+/// Queries for numbers: one query for all numbers, or one query for each number.
 struct NumberQuestion {
   std::vector<std::string> queries;
-  /// Form of each answer, in which "{}" stands for a number, for example "{} K". Empty: the expected numbers, separated
-  /// by commas.
+  /// Form of each answer, with "{}" in place of a number, for example "{} K". Empty: the expected numbers, separated by
+  /// commas.
   std::string answer;
   [[nodiscard]] bool asks() const { return !queries.empty(); }
 };
@@ -117,7 +117,7 @@ struct BlackBodyWords {
 struct StagePosition {
   InstrumentUnit unit{"mm"};
   int decimals = 4;
-  std::vector<std::string> set;  ///< one command for x and y, or one for each
+  std::vector<std::string> set;  ///< one command for x and y, or one command for each
   NumberQuestion set_point;
   NumberQuestion limits;  ///< x0, x1, y0, y1; empty: limits_mm
   std::array<double, 4> limits_mm{};
@@ -125,8 +125,8 @@ struct StagePosition {
   double tolerance_mm = 0.005;
 };
 
-/// Runs along x at constant speed. Positions have the unit of StagePosition, and speeds this unit per second. Without
-/// this part of the table the stage cannot run.
+/// Runs along x at constant speed. Positions are in the unit of StagePosition, speeds in this unit per second. If the
+/// table does not contain this part, the stage cannot run.
 struct StageRun {
   std::string set;        ///< "SOUR:SCAN {},{}": destination, speed
   NumberQuestion limits;  ///< lowest and highest speed; empty: limits_mm_s
@@ -170,13 +170,13 @@ struct InstrumentTable {
   StageWords stage;
 };
 
-/// Returns the numbers in an answer. In `form`, "{}" stands for a number. Blanks may differ, but all other characters
-/// must agree with `form`. Empty if the answer does not have this form, or if a number is not finite.
+/// Returns the numbers in an answer. In `form`, "{}" is the position of a number. Blanks may differ, but all other
+/// characters must agree with `form`. Empty if the answer does not have this form, or if a number is not finite.
 [[nodiscard]] std::optional<std::vector<double>> numbers_in(std::string_view answer, std::string_view form);
 /// Returns the number of "{}" in a text.
 [[nodiscard]] std::size_t places_in(std::string_view form);
-/// Returns a command: `form` with each "{}" replaced by the next element of `words`. Precondition: the numbers of "{}"
-/// and of words are equal.
+/// Returns a command: `form` with each "{}" replaced by the next element of `words`. Precondition: there are as many
+/// words as "{}".
 [[nodiscard]] std::string command_of(std::string_view form, const std::vector<std::string>& words);
 /// Returns `count` times "{}", separated by commas.
 [[nodiscard]] std::string comma_form(std::size_t count);

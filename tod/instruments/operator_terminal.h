@@ -22,7 +22,7 @@ class LineSource {
 };
 
 /// Returns a source of lines from a descriptor that the caller owns, e.g. 0 for standard input. The source waits with
-/// poll(): no other code may read or buffer the descriptor. Lines are truncated to 4096 characters.
+/// poll(), so no other code may read or buffer the descriptor. Lines are truncated to 4096 characters.
 [[nodiscard]] std::unique_ptr<LineSource> descriptor_lines(int fd);
 
 /// Returns a function that writes the steps and reads until an answer arrives: an empty line is `done`, "q" is `stop`.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A client of one instrument with a line-based protocol. By default this is SCPI over a raw TCP socket ("SCPI-RAW" of
-// LXI instruments, usually port 5025); the instrument's table may state another protocol.
+// A client of one instrument with a line-based protocol. By default the protocol is SCPI over a raw TCP socket
+// ("SCPI-RAW" of LXI instruments, usually port 5025). The instrument's table may state a different protocol.
 #pragma once
 
 #include <chrono>
@@ -20,9 +20,10 @@ namespace todbench {
 /// Limits of a connection.
 struct ScpiClientOptions {
   std::chrono::milliseconds connect_timeout{3000};
-  /// Longest time from sending a command to the last character of its answer.
+  /// Longest time from the start of a command to the last character of the answer.
   std::chrono::milliseconds answer_timeout{1000};
-  /// Number of characters; if a peer sends more characters without a line end, it is disconnected.
+  /// Maximum number of characters of an answer. If a peer sends more characters without a line end, the connection is
+  /// closed.
   std::size_t longest_answer = 8192;
 };
 
@@ -43,7 +44,7 @@ class ScpiClient {
  public:
   /// Connects to an instrument. `endpoint`: as for instrument_address(). Clears the instrument's error queue and sends
   /// *IDN?, or the replacements stated by `speech`. Errors: `invalid_input` (endpoint), `not_found` (no connection, or
-  /// another instrument), `interrupted`.
+  /// not the expected instrument), `interrupted`.
   [[nodiscard]] static Result<ScpiClient> connect(const std::string& endpoint, const ScpiClientOptions& options,
                                                   const std::stop_token& stop, const InstrumentSpeech& speech = {});
 

@@ -15,7 +15,7 @@ struct LagEstimate {
   double standard_error_s = 0;
   double degrees_of_freedom = 1;
   /// Returns the deviation of `lag_s` that is exceeded by chance with probability 1/300. For the three estimates of a
-  /// run together, this is 1 %.
+  /// run together, the probability is 1 %.
   [[nodiscard]] double chance_s() const;
   /// Returns whether the magnitude of the lag is above `stated_s` plus chance_s().
   [[nodiscard]] bool exceeds(double stated_s) const;
@@ -23,7 +23,7 @@ struct LagEstimate {
 
 /// Lags of a run. The model of the contrast of small triangles is M = r (L - lag dL/dt) + c, where L is the contrast of
 /// large triangles. The lag common to ramps up and down is estimated from all set-ups. Separate lags of ramps up and
-/// down require presentations with a held contrast, because ramps alone do not distinguish an error of r from lags of
+/// down require presentations at a constant contrast, because ramps alone do not distinguish an error of r from lags of
 /// opposite sign.
 struct ContrastLag {
   LagEstimate all;                          ///< lag from all set-ups, ramps up and down together

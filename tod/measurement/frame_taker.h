@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Selects the frames that may be measured: the integrity gate accepted them, and they were exposed after the last
-// change of the scene and not during a correction.
+// Selects the frames that may be measured. A selected frame was accepted by the integrity gate, was exposed after the
+// last change of the scene, and was not exposed during a correction.
 #pragma once
 
 #include <cstdint>
@@ -23,13 +23,13 @@ namespace todbench {
 struct RejectedFrame {
   std::uint64_t sequence = 0;
   Rejection reason = Rejection::incomplete;
-  std::optional<CorrectionSign> seen{};  ///< evidence of a correction, if the picture showed any
+  std::optional<CorrectionSign> seen{};  ///< evidence of a correction in the picture; empty: none
 };
 
 /// Options of FrameTaker.
 struct FrameTakerOptions {
   IntegrityOptions integrity;
-  /// Number of exposures discarded after a change of the scene, because they may show the scene before it.
+  /// Number of exposures discarded after a change of the scene, because they may show the scene before the change.
   int frames_after_change = 2;
   double nuc_wait_s = 1;                          ///< frames within this time after a correction are rejected
   double max_rejected_share = 0.05;               ///< a larger share, after 100 frames, is an `integrity` error
@@ -37,7 +37,8 @@ struct FrameTakerOptions {
   std::function<void(const RejectedFrame&)> on_rejected{};  ///< called for every rejected frame; may be empty
   /// Gain of the camera's frames. It determines how noise is computed from differences of frames.
   FrameGain gain = FrameGain::constant;
-  std::shared_ptr<const RadiometricScale> scale{};  ///< replaces the scale of every frame; null: each frame's own
+  std::shared_ptr<const RadiometricScale> scale{};  ///< replaces the scale of every frame; null: the scale of each
+                                                    ///< frame is used
 };
 
 /// Average of accepted frames in kelvin, with the noise computed from the differences of the frames.
@@ -51,11 +52,11 @@ struct AveragedPicture {
   /// Lag-1 correlation of a pixel's noise in successive frames (first_order_correlation()); empty: fewer than eight
   /// frames, or no noise.
   std::optional<double> lag1_correlation;
-  /// Unbiased variances per frame of the noise that the pixels of a row or column share and that changes from frame to
-  /// frame. May be negative by chance. Empty for a single frame.
+  /// Unbiased variances per frame of row noise and column noise that change from frame to frame. May be negative by
+  /// chance. Empty for a single frame.
   std::optional<double> row_variance_k2, column_variance_k2;
   /// Largest integer that divides all differences between frames. It is above 1 if a format does not use the lowest
-  /// bits, or if a camera rounds to steps of several counts. 0: there are no differences.
+  /// bits, or if a camera rounds to steps of several counts. 0: all frames are equal.
   int count_step = 0;
 };
 
@@ -71,7 +72,7 @@ class FrameTaker {
 
   /// Announces a change of the scene. Frames that arrived before `now_ns` (clock of Frame::host_time_ns) are discarded.
   void scene_changed(std::int64_t now_ns);
-  /// Commands a non-uniformity correction.
+  /// Commands a non-uniformity correction of the camera.
   [[nodiscard]] Result<void> correct_nonuniformity();
   /// Announces that the camera has carried out the command. Frames are rejected until nuc_wait_s after `now_ns`.
   void corrected(std::int64_t now_ns);
@@ -80,8 +81,8 @@ class FrameTaker {
   /// the frame timeout), `interrupted`.
   [[nodiscard]] Result<Frame> next(std::stop_token stop);
   /// Takes and judges frames while the target changes, until `enough` returns true. `enough` is called before each
-  /// request to the source, with the number of previous requests. The scene may move. A source that sends no frames is
-  /// not an error. Other errors: those of next().
+  /// request to the source, with the number of previous requests. The scene may move. It is not an error if the source
+  /// sends no frames. Other errors: those of next().
   [[nodiscard]] Result<void> take_while_presenting(const std::function<bool(std::int64_t calls)>& enough);
   /// Returns the next accepted frame of a moving scene. Discards no frame, and does not treat a changing picture as a
   /// correction. Errors: those of next().
@@ -99,8 +100,8 @@ class FrameTaker {
   [[nodiscard]] std::map<std::string, std::uint64_t> rejected() const;
   /// Returns a sentence if the camera sends each exposure several times; otherwise empty.
   [[nodiscard]] std::string cadence() const { return cadence_.sentence(); }
-  /// Returns whether the camera reports corrections: at least one frame stated whether it was exposed during a
-  /// correction.
+  /// Returns whether the camera reports corrections. True if the camera stated for at least one frame whether it was
+  /// exposed during a correction.
   [[nodiscard]] bool camera_tells_of_corrections() const { return told_of_corrections_; }
   /// Returns the seconds between the last correction (commanded, reported by the camera, or detected in the picture)
   /// and a frame; negative if no correction is known.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Checks whether a plate can be measured at a distance: whether it fits into the picture, and whether the windows of
-// the observer are free of other triangles.
+// Checks whether a plate can be measured at a distance: the plate must fit into the picture, and the window of the
+// observer round each triangle must not contain other triangles.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ struct PlateBeyondPicture {
   cv::Size picture;
 };
 
-/// The observer's window round one triangle contains a part of another triangle.
+/// The observer's window round a triangle contains a part of a neighbouring triangle.
 struct TrianglesTooNear {
   std::string plate;
   TouchingWindow window;
@@ -36,8 +36,8 @@ struct TrianglesTooNear {
 /// Reason why a geometry cannot be measured.
 using Misfit = std::variant<PlateBeyondPicture, TrianglesTooNear>;
 
-/// Returns all reasons why this geometry cannot be measured; empty if it can. Plates that are too large come first,
-/// because they explain the other reasons. Errors: `invalid_input` (no distance, no IFOV), those of the observer.
+/// Returns all reasons why this geometry cannot be measured; empty if it can. Plates that are too large are first,
+/// because they cause the other reasons. Errors: `invalid_input` (no distance, no IFOV), those of the observer.
 [[nodiscard]] Result<std::vector<Misfit>> find_misfits(const MeasurementOptions& options, Observer& observer,
                                                        cv::Size picture);
 

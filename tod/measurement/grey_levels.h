@@ -18,7 +18,7 @@ namespace todbench {
 /// Unit in which the contrast of the large triangles is measured.
 enum class ContrastUnit {
   kelvin,  ///< kelvin of the camera's temperature scale
-  /// For a camera with gain control. The target reports the contrast in kelvin, and the contrast in grey levels is
+  /// Unit for a camera with gain control. The target reports the contrast in kelvin, and the contrast in grey levels is
   /// measured at the large triangles of every frame.
   grey_levels,
 };
@@ -26,8 +26,8 @@ inline constexpr std::array all_contrast_units{ContrastUnit::kelvin, ContrastUni
 [[nodiscard]] constexpr std::string_view to_string(ContrastUnit unit) {
   return unit == ContrastUnit::grey_levels ? "grey-levels" : "kelvin";
 }
-/// Returns the estimator of levels for this unit: the mean for grey levels, because their steps are coarse; the median
-/// for kelvin.
+/// Returns the estimator of levels for this unit: the mean for grey levels, because grey levels have coarse steps; the
+/// median for kelvin.
 [[nodiscard]] constexpr LevelEstimate level_estimate(ContrastUnit unit) {
   return unit == ContrastUnit::grey_levels ? LevelEstimate::mean : LevelEstimate::median;
 }
@@ -35,12 +35,12 @@ inline constexpr std::array all_contrast_units{ContrastUnit::kelvin, ContrastUni
 /// Resolution of the grey levels of a picture near its surround.
 struct GreySteps {
   double noise_levels = 0;  ///< standard deviation of a pixel in a frame, rounding included
-  /// Mean distance between the levels that occur; above 1 if a gain enlarges the steps of coarser counts.
+  /// Mean distance between the levels that occur; above 1 if a gain multiplies coarse counts.
   double step_levels = 1;
   /// Returns the standard deviation of the noise before rounding, in steps (Sheppard's correction).
   [[nodiscard]] double noise_steps() const;
-  /// Returns rounding_variance() of this noise. Even without noise, a level between two steps causes a measured noise
-  /// of up to half a step. Measured noise of up to 0.52 steps is therefore treated as zero.
+  /// Returns rounding_variance() of this noise. Measured noise of up to 0.52 steps is treated as zero, because a level
+  /// between two steps causes a measured noise of up to half a step even without noise.
   [[nodiscard]] double rounding_variance_steps() const;
 };
 
@@ -50,14 +50,15 @@ struct GreySteps {
 [[nodiscard]] GreySteps grey_steps(const cv::Mat1w& lowest, const cv::Mat1w& highest, double noise_levels);
 
 /// Returns the variance of the mean of many rounded values, in squared steps, averaged over all positions of the true
-/// value between two steps: sum over k of exp(-4 pi^2 k^2 s^2) / (2 pi^2 k^2), where s is the standard deviation of
-/// normal noise in steps. It is 1/12 without noise (Widrow and Kollar 2008, Quantization Noise, 4.3).
+/// value between two steps. It is the sum over k of exp(-4 pi^2 k^2 s^2) / (2 pi^2 k^2), where s is the standard
+/// deviation of normal noise in steps. Without noise it is 1/12 (Widrow and Kollar 2008, Quantization Noise, 4.3).
 [[nodiscard]] double rounding_variance(double noise_steps);
 
 /// Contrast of the large triangles of one frame, in grey levels.
 struct GreyContrast {
   double levels = 0;  ///< mean over the triangles
-  /// From the scatter over the triangles, and from rounding, whose error is common to all triangles.
+  /// Standard uncertainty from the scatter over the triangles, and from rounding, whose error is common to all
+  /// triangles.
   double standard_uncertainty = 0;
   double degrees_of_freedom = 1;  ///< Welch and Satterthwaite
   int triangles = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contrast and noise of the pictures that processing stages compute from the frames of a camera. Stages may change the
-// scale. An observer judges relative to the contrast, so the contrast of the judged picture must be used, not that of
-// the camera's frame.
+// scale. The observer judges relative to the contrast, so the contrast of the judged picture must be used instead of
+// that of the camera's frame.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -21,13 +21,14 @@ namespace todbench {
 
 /// Scale of the judged pictures of one set-up and contrast, relative to the scale of the camera.
 struct JudgedScale {
-  /// Contrast of the large triangles in the judged pictures divided by that in the camera's frames. Negative: the
-  /// stages invert the contrast.
+  /// Contrast of the large triangles in the judged pictures divided by their contrast in the camera's frames. Negative:
+  /// the stages invert the contrast.
   double gain = 1;
   double gain_error = 0;    ///< standard error, from the scatter over the triangles
   double camera_level = 0;  ///< contrast of the large triangles in the camera's frames, on its scale
-  double noise_ratio = 1;   ///< noise of a judged frame divided by that of a camera's frame, each on its own scale
-  bool changes = false;     ///< the gain changes from frame to frame and is measured in each frame
+  double noise_ratio = 1;   ///< noise of a judged frame, on its scale, divided by the noise of a camera's frame, on the
+                            ///< camera's scale
+  bool changes = false;     ///< true: the gain changes from frame to frame and is measured in each frame
   GreySteps steps{};        ///< resolution of the judged counts
 };
 /// Record of one set-up and contrast.
@@ -44,14 +45,14 @@ struct JudgedContrast {
 /// Returns whether any stage changed the frame.
 [[nodiscard]] bool behind_stages(const Frame& frame);
 
-/// Returns the contrast of the large triangles in one judged frame, computed from mean levels, on the scale of its
-/// counts. If the judged picture has several samples per pixel of the camera, only one sample per pixel is used.
+/// Returns the contrast of the large triangles in one judged frame, computed from mean levels, on the scale of the
+/// judged counts. If the judged picture has several samples per pixel of the camera, only one sample per pixel is used.
 /// Errors: those of effective_contrast() and of the scale.
 [[nodiscard]] Result<EffectiveContrast> judged_levels(const Frame& frame, const TargetPlate& mounted_plate,
                                                       const Registration& registration, double min_size_px);
 
-/// Ratio of the noise memory after the stages to that of the camera's noise. Computed by LagDifferences::memory() from
-/// successive frames of one scene.
+/// Ratio of the memory of the noise after the stages to the memory of the camera's noise. Computed by
+/// LagDifferences::memory() from successive frames of one scene.
 class JudgedMemory {
  public:
   explicit JudgedMemory(int frames) : camera_(frames, FrameGain::changing), judged_(frames, FrameGain::changing) {}
@@ -79,8 +80,8 @@ class JudgedFrames {
   /// Returns the scale of the judged pictures; empty without stages. `memory_ratio`: JudgedMemory::ratio(). Errors:
   /// those of judged_levels(); `not_identifiable` (the judged pictures do not show the large triangles).
   [[nodiscard]] Result<std::optional<JudgedScale>> scale(double memory_ratio) const;
-  /// Average of the judged frames on the camera's scale, and the registration in this average. Empty without stages, or
-  /// if the judged pictures have more samples than the camera's frames.
+  /// Average of the judged frames on the camera's scale, and registration in this average. Empty without stages, or if
+  /// the judged pictures have more samples than the camera's frames.
   struct Average {
     AveragedPicture picture;
     Registration registration;

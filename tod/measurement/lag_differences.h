@@ -22,8 +22,8 @@ enum class FrameGain {
 /// and b are the gains of the two pictures.
 [[nodiscard]] cv::Mat1d difference_of(const cv::Mat1d& from, const cv::Mat1d& to, FrameGain gain);
 
-/// Differences of pictures at three lags: one frame, 3/8 and 3/4 of the planned number of frames. Offsets of whole
-/// frames are removed. Stores a quarter of the frames. One thread at a time.
+/// Computes differences of pictures at three lags: one frame, 3/8 and 3/4 of the planned number of frames. Removes
+/// offsets of whole frames. Stores a quarter of the frames. One thread at a time.
 class LagDifferences {
  public:
   /// `frames`: planned number, at least 2.
@@ -33,8 +33,8 @@ class LagDifferences {
 
   /// Returns half of the mean squared difference of successive frames; 0 without successive frames.
   [[nodiscard]] double successive_variance() const { return successive_.mean(); }
-  /// Returns the variance of a pixel in one frame. It is exact for white noise, for noise of first order, and for
-  /// moving means over at most 3/8 of the frames. With too few frames it is the successive variance.
+  /// Returns the variance of a pixel in one frame. The result is exact for white noise, for noise of first order, and
+  /// for moving means over at most 3/8 of the frames. With too few frames it is the successive variance.
   [[nodiscard]] double variance() const;
   /// Returns variance() / successive_variance(). The ratio is above 1 for noise with memory, and 1 without noise.
   [[nodiscard]] double memory() const;

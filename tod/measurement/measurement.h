@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The measurement. It obtains trials from a frame source, a target and an observer. A measurement in the laboratory and
-// a simulation differ only in these objects.
+// The measurement. It obtains trials from a frame source, a target and an observer. Measurements in the laboratory and
+// simulations differ only in these objects.
 #pragma once
 
 #include <chrono>
@@ -45,7 +45,7 @@ struct MeasurementOptions {
   double distance_m = 0;            ///< entrance pupil to plate
   std::vector<TargetPlate> plates;  ///< plates in identity mounting
   int registration_frames = 32;     ///< number of frames averaged at the highest contrast to locate the plate
-  /// Number averaged to measure the effective contrast, once for each plate, mounting and contrast.
+  /// Number of frames averaged to measure the effective contrast, once for each plate, mounting and contrast.
   int contrast_frames = 16;
   double min_reference_px = 4;  ///< size of the smallest triangles that are used to measure the effective contrast
   ContrastUnit contrast_unit = ContrastUnit::kelvin;  ///< grey_levels: the camera's temperature scale is not used
@@ -53,14 +53,14 @@ struct MeasurementOptions {
   int samples_per_pitch = 1;
   /// JudgedPicture::samples_per_pixel in every frame; ifov_mrad is always the IFOV of a pixel.
   int judged_samples_per_pixel = 1;
-  /// Response of effective_contrast() to a contrast of 1 K, by plate name, from a simulated picture that includes the
-  /// blur. 1 if unknown. Measured contrasts are divided by the response.
+  /// Response of effective_contrast() to a contrast of 1 K, by plate name. It is determined with a simulated picture
+  /// that includes the blur; 1 if unknown. Measured contrasts are divided by the response.
   std::map<std::string, double> contrast_response;
   /// Called for every SetUpPicture if contrasts are in kelvin. The returned values replace contrast_response for this
   /// and all later pictures. May be empty. Called from the measuring thread.
   std::function<std::map<std::string, double>(const SetUpPicture&)> learn_response{};
-  /// Transmittance of the air between target and camera for a contrast. It is recorded with every presentation; empty:
-  /// not stated.
+  /// Transmittance of the air between target and camera for a contrast, recorded with every presentation. Empty: not
+  /// stated.
   std::optional<double> air_transmittance{};
   /// Number of draws of the observer's internal noise for the probabilities of one frame.
   static constexpr int graded_draws = 32;
@@ -71,7 +71,8 @@ struct MeasurementOptions {
   int frames_after_change = 2;
   double nuc_interval_s = 0;  ///< interval of commanded non-uniformity corrections; 0: none
   double nuc_wait_s = 1;      ///< frames within this time after a correction are not measured
-  /// Deviation of the target's reported contrast from the set-point above which a note is added; 0: not checked.
+  /// Largest difference between reported and set contrast of the target. A larger difference adds a note. 0: not
+  /// checked.
   double max_readback_deviation_k = 0;
   /// Largest permitted relative deviation of the observed contrast, by set contrast. If the deviation is larger by more
   /// than four standard errors, the run ends with `calibration`. Other contrasts, and contrasts in grey levels, are not
@@ -85,10 +86,10 @@ struct MeasurementOptions {
   IntegrityOptions integrity;
   RegistrationOptions registration;  ///< the expected scale is computed from distance and IFOV
   std::uint64_t seed = 1;
-  bool free_running = true;  ///< The camera exposes without requests, so its frames are also taken during pauses.
+  bool free_running = true;  ///< true: the camera exposes without requests, so frames are also taken during pauses
 };
 
-/// A loss of the camera after which the run continued with a new segment.
+/// Loss of the camera, after which the run continued with a new segment.
 struct Interruption {
   std::int64_t presentation = 0;  ///< first presentation of the new segment
   double away_s = 0;              ///< time from the error to the answers of `presentation`
@@ -99,14 +100,14 @@ struct Interruption {
 
 struct SetUpRecord;
 
-/// Events of a run. The functions are called from the measuring thread. on_rejected is also called from the thread that
-/// takes frames while the measuring thread waits for the target, but never from both threads at once. Every function
+/// Events of a run. The functions are called from the measuring thread. While the measuring thread waits for the
+/// target, on_rejected is called from the thread that takes frames, but never from both threads at once. Every function
 /// may be empty. No function affects the results. A slow function delays the measurement, but no trials are lost.
 struct MeasurementListener {
   std::function<void(const Trial&)> on_trial{};
   /// Called after on_trial with the observer's patch of the first frame. The patch is valid only during the call.
   std::function<void(const Trial&, const Patch&)> on_patch{};
-  /// Called for each presentation when the target is in place, before the trials of the presentation. Also called if no
+  /// Called for each presentation when the target is in place, before the trials of the presentation, and also if no
   /// trial is possible.
   std::function<void(const Presentation&)> on_presentation{};
   std::function<void(const SetUpRecord&)> on_set_up{};
@@ -144,7 +145,7 @@ struct MeasurementResult {
   std::vector<Interruption> interruptions;
   std::vector<GreyFrame> grey_frames;  ///< judged frames, if contrasts are in grey levels
   std::optional<Error> ended_by;       ///< reason for an early end; the trials before it are valid
-  RunConstancy constancy{};            ///< data from the averages; without a residue if contrasts are in grey levels
+  RunConstancy constancy{};            ///< results of the averages; without a residue if contrasts are in grey levels
 };
 
 /// Returns the random stream of the observer's answer to a triangle of a presentation. `triangle`: index in the order
@@ -152,8 +153,8 @@ struct MeasurementResult {
 [[nodiscard]] RandomStream answer_noise(std::uint64_t seed, std::int64_t presentation, std::size_t triangle);
 
 /// Runs a schedule. Returns an error only if no measurement is possible: the plate is not found, the camera has no
-/// temperature scale, or find_misfits() rejects the geometry. A run that ends early returns its trials and `ended_by`.
-/// `host` and `listener` are used only during the call.
+/// temperature scale, or find_misfits() rejects the geometry. A run that ends early returns the trials until then and
+/// `ended_by`. `host` and `listener` are used only during the call.
 [[nodiscard]] Result<MeasurementResult> measure(FrameSource& source, Target& target, Observer& observer,
                                                 TrialSchedule& schedule, const MeasurementOptions& options,
                                                 RunController& host, const MeasurementListener& listener,

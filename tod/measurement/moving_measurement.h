@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Measurement of a plate that a stage moves. A pass consists of several frames, in which each triangle is judged at its
-// position.
+// Measurement of a plate that a stage moves. A pass consists of several frames. In each frame, a triangle is judged at
+// its position in this frame.
 #pragma once
 
 #include <array>
@@ -22,8 +22,8 @@ struct MovingMeasurementOptions {
   /// Options as for a plate at rest; schedule, answers and corrections are ignored.
   MeasurementOptions measurement;
   std::vector<Mounting> mountings;
-  /// For each plate of `measurement`, the number of `mountings` in which it is shown, counted from the first one;
-  /// empty: all.
+  /// For each plate of `measurement`, the number of `mountings` in which the plate is shown, counted from the first
+  /// mounting; empty: all.
   std::vector<std::size_t> mountings_per_plate{};
   /// Contrasts, not 0. The plate is located at the contrast with the largest magnitude.
   std::vector<double> delta_t_k;
@@ -31,8 +31,8 @@ struct MovingMeasurementOptions {
   /// Number of passes of each plate, mounting, contrast and speed, alternately to the right and to the left.
   int passes = 4;
   int frames = 8;  ///< number of successive frames of a pass that are judged
-  /// Number of frames of motion before the first judged frame. They must be enough for the detector to show no residue
-  /// of the plate at rest.
+  /// Number of frames of motion before the first judged frame. It must be large enough that the detector shows no
+  /// residue of the plate at rest.
   int lead_frames = 5;
   PlaceSource places = PlaceSource::triangles;
 };
@@ -40,7 +40,7 @@ struct MovingMeasurementOptions {
 /// One pass. The answers of a pass are one cluster.
 struct MovingPassRecord {
   int pass = 0;  ///< index in the whole measurement
-  /// Index of the sampling phase, counted over plates, mountings and contrasts. It is the same at every speed.
+  /// Index of the sampling phase, counted over plates, mountings and contrasts. The index is the same at every speed.
   int pair = 0;
   std::string plate;
   Mounting mounting = Mounting::identity;
@@ -48,7 +48,7 @@ struct MovingPassRecord {
   double speed_mrad_s = 0;   ///< requested
   double along_x = 1;        ///< +1: to the right
   double said_px_s = 0;      ///< speed reported by the stage, converted by the registration
-  double measured_px_s = 0;  ///< speed from the positions of the large triangles as a function of device time
+  double measured_px_s = 0;  ///< speed computed from the positions of the large triangles as a function of device time
   double residual_px = 0;    ///< rms deviation of these positions from a line with the speed of the stage, per axis
   /// Delay of the plate in the picture, from the centre of mass of the large triangles. Empty: the plate is at rest,
   /// there is no trigger, or the contrast is not the largest.
@@ -68,8 +68,8 @@ struct MovingAnswer {
 struct MovingMeasurement {
   std::vector<MovingPassRecord> passes;
   std::vector<MovingAnswer> answers;
-  /// For an observer with an eye: answers to the same frames by the best and by the worst observer of the range of its
-  /// open parameters.
+  /// Answers to the same frames by the best and by the worst observer of the range of the open parameters, for an
+  /// observer with an eye.
   std::array<std::vector<MovingAnswer>, 2> answers_at_ends;
   std::vector<SetUpRecord> set_ups;
   double frame_rate_hz = 0;
@@ -77,7 +77,7 @@ struct MovingMeasurement {
   std::map<std::string, std::uint64_t> frames_rejected;
   std::uint64_t frames_lost = 0, frames_used = 0;
   std::optional<Error> ended_by;   ///< reason for an early end; the passes and answers before it are valid
-  std::vector<std::string> notes;  ///< also contains the notes about the plate at rest: target, contrasts, saturation
+  std::vector<std::string> notes;  ///< includes the notes about the plate at rest: target, contrasts, saturation
   std::vector<Presentation> presentations;  ///< presentations of the contrasts at rest, in the order of the run
   RunConstancy constancy{};                 ///< data from the averages of the plate at rest
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compares the position of the plate in the frames of each presentation with the requested position.
+// Compares, for each presentation, the position of the plate in the frames with the requested position.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +25,7 @@ struct PlaceWatchOptions {
   RegistrationOptions registration;
 };
 
-/// Properties of the picture that are known before the position of the plate is measured, in the unit of
-/// window_kelvin().
+/// Properties of the picture that are known before the measurement of the position, in the unit of window_kelvin().
 struct ExpectedPicture {
   double contrast = 0;  ///< triangle minus surround
   double noise = 0;     ///< noise of a pixel in one frame; 0: not known
@@ -38,20 +37,21 @@ struct PlateSeen {
   cv::Point2d asked_px;
   std::optional<cv::Point2d> seen_px;  ///< observed position in the frames; empty: too little contrast
   cv::Point2d standard_error_px;       ///< standard error of seen_px
-  cv::Point2d used_off_px{0, 0};       ///< position at which frames are judged minus the requested position
+  cv::Point2d used_off_px{0, 0};       ///< position used to judge frames minus the requested position
   double amplitude = 0;                ///< common contrast of the large triangles, in the unit of window_kelvin()
   /// Standard error of the amplitude. 0: not measured.
   double amplitude_error = 0;
-  /// Share of the variance of amplitude_error that recurs in the next presentation, due to fixed pattern.
+  /// Share of the variance of amplitude_error that is due to fixed pattern and is therefore the same in the next
+  /// presentation.
   double shared = 1;
 };
 
 /// Measures the position of the plate in each presentation. Within a set-up, positions are averaged over the last 1, 2,
-/// 4, ... presentations until the standard error is 0.03 px. The mean replaces the requested position if it has this
-/// standard error, or the smallest standard error possible in the set-up, and if it differs from the requested position
-/// by more than 0.05 px and more than six standard errors. Otherwise the requested position is used without any change.
-/// For a plate at its correct position, six standard errors on two axes are exceeded once in 7e7 measurements. One
-/// thread at a time.
+/// 4, ... presentations until the standard error is 0.03 px. The mean replaces the requested position if two conditions
+/// are met. The mean has this standard error, or the smallest standard error possible in the set-up; and it differs
+/// from the requested position by more than 0.05 px and more than six standard errors. Otherwise the requested position
+/// is used unchanged. For a plate at the requested position, six standard errors on two axes are exceeded once in 7e7
+/// measurements. One thread at a time.
 class PlaceWatch {
  public:
   explicit PlaceWatch(PlaceWatchOptions options) : options_(options) {}
@@ -66,7 +66,7 @@ class PlaceWatch {
   [[nodiscard]] Result<PlateSeen> look(std::span<const Frame> frames, const TargetPlate& mounted_plate,
                                        const Registration& base, const Registration& asked,
                                        const ExpectedPicture& expected, std::int64_t presentation);
-  /// Returns the position at which the next frames are judged minus the requested position.
+  /// Returns the position that is used to judge the next frames, minus the requested position.
   [[nodiscard]] cv::Point2d off_px() const { return used_off_px_; }
   /// Returns an error that was detected but not yet returned. Call this function at the end of the run.
   [[nodiscard]] Result<void> finish() const;
@@ -74,10 +74,11 @@ class PlaceWatch {
   [[nodiscard]] std::vector<std::string> notes() const;
 
  private:
-  /// A measured position, with the data for the error of a mean over presentations.
+  /// A measured position, with the data from which the error of a mean over presentations is computed.
   struct Look {
     ShiftSeen place;
-    double shared = 1;  ///< share of the variance that recurs in the next presentation, due to fixed pattern
+    double shared = 1;  ///< share of the variance that is due to fixed pattern and is therefore the same in the next
+                        ///< presentation
   };
   struct Mean {
     cv::Point2d off_px, standard_error_px;

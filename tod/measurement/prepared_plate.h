@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A plate of the plan with the observer prepared for each of its triangles.
+// A plate of the plan, with an observer prepared for each triangle.
 #pragma once
 
 #include <memory>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Tests whether the camera remained constant during a run, and whether each picture shows the present target. The tests
-// use the averages in which the contrasts are measured. All functions are pure functions of the run's records.
+// use the averages in which the contrasts are measured. All functions are pure functions of the records of a run.
 #pragma once
 
 #include <optional>
@@ -36,15 +36,15 @@ struct PictureResidue {
   /// Share of the difference between the previous picture and this picture that remains in the first frame. 0: no
   /// residue.
   double share = 0;
-  /// Largest share at which the picture is regarded as constant.
+  /// Largest share that is not a finding.
   double limit = 0;
   /// True: the residue is in the pictures after the stages. False: it is in the frames of the camera.
   bool behind_stages = false;
 };
 
 /// Contrast of the large triangles of one set-up at one set contrast: in its presentations, and in the average before
-/// them, in which the contrast was measured. Both are amplitudes of the same fit (fit_place()), so an inexact blur
-/// changes both equally.
+/// them, in which the contrast was measured. Both contrasts are amplitudes of the same fit (fit_place()), so an inexact
+/// blur changes both equally.
 struct PresentedContrast {
   /// Set contrast.
   double set_delta_t_k = 0;
@@ -56,7 +56,7 @@ struct PresentedContrast {
   int presentations = 0;
 };
 
-/// Further results of the averages of a run.
+/// Results of the averages of a run, for the tests of constancy.
 struct RunConstancy {
   /// One element for each average, in the order of the run.
   std::vector<PictureNoise> noise;
@@ -84,23 +84,23 @@ inline constexpr double transfer_systematic_u = 0.01;
 inline constexpr double transfer_false_alarm = 0.005;
 
 /// Returns the relative change of the signal transfer between the first set-ups and the later set-ups. Every division
-/// of the run into first and later set-ups is tested. The change with the largest ratio to its limit is returned. A
-/// set-up with several contrasts contributes the difference of its lowest and highest contrast for each triangle. In
-/// this difference, fixed pattern, row noise and column noise cancel. If a set-up has one contrast, the error also
-/// includes a pattern that all its triangles share. Its standard deviation is set to the scatter of one triangle. A
-/// set-up is excluded if its contrasts span less than half of the widest span. The error contains the pooled scatter of
-/// the triangles within the set-ups (Student's t) and transfer_systematic_u. The probability of a false alarm is shared
-/// among the divisions. Empty with fewer than two set-ups, or if no set-up has two triangles.
+/// of the run into first and later set-ups is tested. The change with the largest ratio to its limit is returned. For a
+/// set-up with several contrasts, the difference between the lowest and the highest contrast of each triangle is used.
+/// In this difference, fixed pattern, row noise and column noise cancel. If a set-up has one contrast, the error also
+/// includes a pattern common to all its triangles. The standard deviation of this pattern is set to the scatter of one
+/// triangle. A set-up is excluded if its contrasts span less than half of the widest span. The error contains the
+/// pooled scatter of the triangles within the set-ups (Student's t) and transfer_systematic_u. The probability of a
+/// false alarm is shared among the divisions. Empty with fewer than two set-ups, or if no set-up has two triangles.
 [[nodiscard]] std::optional<ConstancyFigure> transfer_change(std::span<const ContrastMeasurement> measurements);
 
 /// Returns the change of the noise: ln (noise of a later average / noise of the first average at the same contrast).
 /// The change with the largest ratio to its limit is returned, over all contrasts and later averages. The limit is
 /// constancy_errors standard errors, at least most_noise_change.
 ///
-/// n is the number of independent samples of a frame. Whole lines are assumed to cause half of the variance:
-/// 1/n = 1/(4 L) + 1/(4 L^2), L is the smaller of the numbers of rows and columns. For N frames of white noise, the
-/// mean square of the N - 1 successive differences has the relative variance (3 N - 4) / ((N - 1)^2 n). For noise with
-/// memory the variance is smaller.
+/// Let n be the number of independent samples of a frame. Whole lines are assumed to cause half of the variance: 1/n =
+/// 1/(4 L) + 1/(4 L^2), where L is the number of rows or of columns, whichever is smaller. For N frames of white noise,
+/// the mean square of the N - 1 successive differences has the relative variance (3 N - 4) / ((N - 1)^2 n). For noise
+/// with memory the variance is smaller.
 ///
 /// Grey levels: the noise is relative to the contrast, so a change of the gain does not change it. The limit then
 /// contains a further term, added in quadrature: the error of the quotient of the two contrasts, times Student's t for
@@ -114,11 +114,11 @@ inline constexpr double constancy_errors = 5;
 /// Returns the relative difference between the contrast in the presentations and the measured contrast. The difference
 /// with the largest ratio to its limit is returned, over all elements of `presented`. The limit is constancy_errors
 /// standard errors and most_presented_change, added in quadrature. The standard error combines the errors of both
-/// amplitudes. It takes into account that fixed pattern recurs in all presentations. Empty if no contrast was
+/// amplitudes. It takes into account that the fixed pattern is the same in all presentations. Empty if no contrast was
 /// presented.
 [[nodiscard]] std::optional<ConstancyFigure> presented_change(std::span<const PresentedContrast> presented);
-/// Relative difference that is allowed in addition to the standard errors. The reason is that the amplitude of
-/// triangles of four pixels depends on their phases.
+/// Relative difference that is allowed in addition to the standard errors, because the amplitude of triangles of four
+/// pixels depends on their phases.
 inline constexpr double most_presented_change = 0.04;
 
 /// Returns the lag-1 correlation of a later average minus that of the first average at the same contrast. The
@@ -137,12 +137,12 @@ inline constexpr double most_correlation_change = 0.2;  ///< five errors of 16 f
 [[nodiscard]] std::optional<PictureResidue> picture_residue(const cv::Mat1d& before, const cv::Mat1d& first,
                                                             const cv::Mat1d& last, const cv::Mat1d& mean,
                                                             double noise_k);
-/// Returns the residue in the judged pictures of an average. Stages may scale each picture differently. `before`: mean
-/// of the judged pictures of the previous average; `mean`: mean of `pictures`. The share of the previous picture is
-/// computed for each picture. The residue is the share in the first picture minus the mean share in the second half of
-/// the pictures. The limit includes five standard deviations of the shares in the second half. The noise is the median
-/// over the pixels. Empty as for picture_residue(), for fewer than eight pictures, and if `before` is empty or has
-/// a different size.
+/// Returns the residue in the judged pictures of an average. The share is computed for each picture, because stages may
+/// scale each picture differently. `before`: mean of the judged pictures of the previous average; `mean`: mean of
+/// `pictures`. The residue is the share in the first picture minus the mean share in the second half of the pictures.
+/// The limit includes five standard deviations of the shares in the second half. The noise is the median over the
+/// pixels. Empty as for picture_residue(), for fewer than eight pictures, and if `before` is empty or has a different
+/// size.
 [[nodiscard]] std::optional<PictureResidue> judged_residue(const cv::Mat1d& before, std::span<const cv::Mat1w> pictures,
                                                            const cv::Mat1d& mean);
 /// Smallest limit of a residue. It exceeds the residue that rounding, or a fixed pattern that drifts between

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interface of the code that controls a measurement: clock, pauses, recovery of a lost camera. Code that only observes
-// the measurement uses a MeasurementListener.
+// Interface of the code that controls a measurement: clock, pauses, recovery of a lost camera. Use a
+// MeasurementListener for code that only observes the measurement.
 #pragma once
 
 #include <array>
@@ -25,10 +25,10 @@ inline constexpr std::array all_moments{Moment::correction_due, Moment::correcte
                                         Moment::camera_lost, Moment::camera_back};
 [[nodiscard]] std::string_view to_string(Moment moment);
 
-/// How frames are treated that a camera sends while the target changes.
+/// Treatment of the frames that a camera sends while the target changes.
 enum class FramesWhilePresenting {
   leave,  ///< not requested: for a camera that exposes only on request
-  take,   ///< taken by a separate thread, so that queues stay short and every correction is detected
+  take,   ///< taken by a separate thread, to keep queues short and to detect every correction
   repeat  ///< for a replay: RunController::asked_while_presenting() returns the recorded number of requests
 };
 
@@ -44,7 +44,7 @@ class RunController {
   /// Returns whether the run is paused. Called before every presentation, and repeatedly while the run is paused. May
   /// block for up to 0.1 s; returns early if `stop` is requested.
   [[nodiscard]] virtual Result<bool> rests(std::stop_token stop) = 0;
-  /// Returns how frames are treated while the target changes. The value is constant during a run.
+  /// Returns the treatment of frames while the target changes. The value is constant during a run.
   [[nodiscard]] virtual FramesWhilePresenting frames_while_presenting() const = 0;
   /// Called after the target has presented a state. `calls`: number of frames requested during the change; 0 in a
   /// replay. Returns this number; in a replay, the recorded number. Not called for FramesWhilePresenting::leave.
@@ -59,7 +59,7 @@ class RunController {
   virtual void resumed() = 0;
 };
 
-/// Host of a run without pauses and without recovery of the camera, such as a simulation.
+/// Host of a run without pauses and without recovery of the camera, for example of a simulation.
 class UnattendedHost final : public RunController {
  public:
   [[nodiscard]] Result<std::int64_t> now_ns(Moment) override { return monotonic_ns(); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Detects clipped pixels: the target is too hot or too cold for the camera.
+// Detects clipped pixels. Pixels are clipped if the target is too hot or too cold for the camera.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -19,10 +19,10 @@ class SaturationWatch {
   /// frame, without defective pixels.
   ///
   /// The initial values are 0 and the full scale of the significant bits. A count becomes the lowest or the highest
-  /// count if several pixels had this count in every frame, noise changed the other pixels, and no pixel exceeded this
-  /// count. Such a count is the limit of a temperature range, or of a camera with fewer bits than the format. A pixel
-  /// that had the lowest or the highest count in every frame is defective if it is outside the triangles, or if the
-  /// levels of the triangles are far from this count. A defective pixel is ignored until it changes.
+  /// count if several pixels had this count in every frame, noise changed the other pixels, and no pixel was beyond
+  /// this count. This count is then the limit of a temperature range, or of a camera with fewer bits than the format. A
+  /// pixel that had the lowest or the highest count in every frame is defective if it is outside the triangles, or if
+  /// the levels of the triangles are far from this count. A defective pixel is ignored until it changes.
   [[nodiscard]] int learn(const AveragedPicture& picture, const RadiometricScale& scale,
                           const TargetPlate& mounted_plate, const Registration& registration, double contrast_k);
   /// Returns the number of pixels in the window at the lowest or the highest count, without defective pixels.
@@ -37,8 +37,8 @@ class SaturationWatch {
   cv::Mat1b defective_;  ///< empty: not yet determined
 };
 
-/// Returns whether more than one in a thousand pixels have the lowest or the highest count in every frame. The two
-/// counts are determined as in SaturationWatch::learn().
+/// Returns whether more than one pixel in a thousand has the lowest or the highest count in every frame. The two counts
+/// are determined as in SaturationWatch::learn().
 [[nodiscard]] bool saturated(const AveragedPicture& picture);
 
 }  // namespace todbench

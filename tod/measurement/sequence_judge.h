@@ -17,7 +17,7 @@ namespace todbench {
 /// Use of the frames of a pass by an observer.
 enum class SequenceObserver {
   single_frame,  ///< judges the first frame only
-  /// Adds the scores of all frames, each at the true position of the target: an upper bound for pursuit by the eye.
+  /// Adds the scores of all frames, computed at the true position of the target: an upper bound for pursuit by the eye.
   tracking_sum,
   /// Averages all frames and judges the mean at the target's position in the middle of the pass: persistence without
   /// pursuit.
@@ -55,8 +55,8 @@ class SequenceJudge {
                            const RandomStream& noise) const;
 
  private:
-  /// Observer and bank of one size. The bank extends half a sample beyond the search range of the observer, so that the
-  /// search can be centred on any true position between two samples.
+  /// Observer and bank of one size. The bank extends half a sample beyond the search range of the observer. The search
+  /// can therefore be centred on any true position between two samples.
   struct PreparedSize {
     std::shared_ptr<const PreparedObserver> observer;
     std::shared_ptr<const PreparedObserver> finer;  ///< observer for a picture on a grid twice as fine

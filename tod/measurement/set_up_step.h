@@ -59,9 +59,9 @@ struct SeenContrast {
   std::optional<PlaceFit> large{};
 };
 
-/// Returns a message for an observed contrast that does not have the sign of its set-point. The message states one of
-/// three reasons: the contrast is below one count of the camera (`kelvin_per_count`, if known), it does not exceed
-/// three standard errors, or the target or the camera has the wrong sign.
+/// Returns a message for an observed contrast that does not have the sign of the set-point. The message states the
+/// reason: the contrast is below one count of the camera (`kelvin_per_count`, if known); the contrast does not exceed
+/// three standard errors; or the target or the camera has the wrong sign.
 [[nodiscard]] std::string unexpected_sign(double set_k, const EffectiveContrast& observed, ContrastUnit unit,
                                           std::optional<double> kelvin_per_count);
 
@@ -74,11 +74,11 @@ class SetUpStep {
             std::function<void(const std::string&)> note)
       : options_(options), camera_(camera), taker_(taker), note_(std::move(note)) {}
 
-  /// Sets whether the contrast of the next averages has settled. Averages with a contrast that has not settled are not
+  /// Sets whether the contrast of the next averages has settled. If the contrast has not settled, averages are not
   /// compared with earlier pictures.
   void expect(ContrastWait wait) { wait_ = wait; }
-  /// Takes the frames in which a plate is located, and returns their average. Stores the noise of the first average
-  /// that has noise.
+  /// Takes the frames in which a plate is located, and returns the average of these frames. Stores the noise of the
+  /// first average that has noise.
   [[nodiscard]] Result<AveragedPicture> look(std::stop_token stop);
   /// Locates the plate in the average. Precondition: `mounted_plate` agrees with `state`. Errors: those of
   /// register_plate(); `calibration` (saturated picture, or triangles with the opposite polarity).
@@ -93,9 +93,9 @@ class SetUpStep {
   [[nodiscard]] Result<SeenContrast> contrast(const TargetPlate& mounted_plate, const Registration& registration,
                                               const TargetState& set, const PresentedTarget& said,
                                               std::stop_token stop);
-  /// Measures the contrast of a presentation in its own frames. Returns `seen` with this contrast if it has the sign of
-  /// the set-point and exceeds five standard errors; otherwise `seen` keeps its contrast. Errors: those of
-  /// effective_contrast(); `calibration` (pixels without a temperature).
+  /// Measures the contrast of a presentation in the frames of this presentation. Returns `seen` with this contrast if
+  /// the contrast has the sign of the set-point and exceeds five standard errors; otherwise returns `seen` unchanged.
+  /// Errors: those of effective_contrast(); `calibration` (pixels without a temperature).
   [[nodiscard]] Result<SeenContrast> own_contrast(std::span<const Frame> frames, const TargetPlate& mounted_plate,
                                                   const Registration& registration, const TargetState& set,
                                                   SeenContrast seen) const;
@@ -135,7 +135,8 @@ class SetUpStep {
   [[nodiscard]] double response(const std::string& plate) const;
   void note_saturation(const AveragedPicture& picture, const TargetPlate& mounted_plate,
                        const Registration& registration, const TargetState& set, double contrast);
-  /// Determines the lowest and the highest count of the judged pictures. `contrast`: contrast after the stages.
+  /// Determines the lowest and the highest count of the judged pictures, and adds a note about saturation. `contrast`:
+  /// contrast after the stages.
   void note_saturation_behind(const JudgedFrames& frames, const TargetPlate& mounted_plate, const TargetState& set,
                               double contrast);
   [[nodiscard]] Result<SeenContrast> in_kelvin(const EffectiveContrast& measured, const TargetState& set) const;
@@ -156,8 +157,8 @@ class SetUpStep {
   /// Response by plate. It replaces MeasurementOptions::contrast_response.
   std::map<std::string, double> learnt_response_;
   double temporal_noise_k_ = 0;
-  /// Noise of a pixel in one frame. It exceeds temporal_noise_k_ if the noise has memory, because differences of
-  /// successive frames contain only a part of such noise.
+  /// Noise of a pixel in one frame. If the noise has memory, this value exceeds temporal_noise_k_, because differences
+  /// of successive frames contain only a part of the noise.
   double noise_of_frame_k_ = 0;
   double memory_ratio_ = 1;              ///< JudgedMemory::ratio()
   std::vector<double> noted_contrasts_;  ///< set contrasts for which a note about the stages was added

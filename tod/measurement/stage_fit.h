@@ -19,13 +19,15 @@ struct ShiftSeen {
   cv::Point2d standard_error_px;  ///< > 0
 };
 
-/// Linear relation between observed and requested motion, by weighted least squares. Each set-up has its own origin.
+/// Linear relation between observed and requested motion, by weighted least squares. The origin of each set-up is
+/// fitted separately.
 struct StageFit {
   cv::Matx22d seen_per_asked = cv::Matx22d::eye();  ///< rows: x and y observed; columns: x and y requested
   cv::Matx22d standard_error;
   double chi2 = 0;            ///< chi-square of seen_per_asked relative to the unit matrix, 4 degrees of freedom
   double explained = 0;       ///< share of the squared deviations (observed minus requested) that the matrix explains
-  double largest_off_px = 0;  ///< largest deviation of a fitted shift from the requested shift, without the origins
+  double largest_off_px = 0;  ///< largest deviation of a fitted shift from the requested shift, after removal of the
+                              ///< origins
   double largest_off_error_px = 0;  ///< standard error of largest_off_px, per axis
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Change of the target while the camera continues to send frames.
+// Changes the target while the camera continues to send frames.
 #pragma once
 
 #include <stop_token>
@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Outcome of a change of the target: result of the target, and result of taking frames.
+/// Result of a change of the target: result of present(), and result of taking frames.
 struct TargetChange {
   Result<PresentedTarget> presented;
   Result<void> frames;  ///< result of taking frames during the change; success if no frames were taken
@@ -20,9 +20,9 @@ struct TargetChange {
 };
 
 /// Presents a state. Frames that the camera sends during the change are treated as
-/// RunController::frames_while_presenting() states. If they are taken, a second thread takes them. A failure of the
-/// camera then ends the wait for the target: a black body may need minutes to settle, and the state must be presented
-/// again after the failure. Errors: only those of `host`.
+/// RunController::frames_while_presenting() states. A second thread takes the frames if they are to be taken. A failure
+/// of the camera then ends the wait for the target, because a black body may need minutes to settle, and the state must
+/// be presented again after the failure. Errors: only those of `host`.
 [[nodiscard]] Result<TargetChange> change_target(Target& target, FrameTaker& taker, RunController& host,
                                                  const TargetState& state, std::stop_token stop);
 

@@ -26,7 +26,8 @@ struct PresentationShown {
   double point_delta_t_k = 0;  ///< set contrast of the point of the curve
   const SeenContrast& seen;
   std::int64_t presentation = 0;
-  std::span<const Frame> first_frames;  ///< frames already taken; the remaining frames are taken from the camera
+  std::span<const Frame> first_frames;  ///< frames that were already taken; the remaining frames are taken from the
+                                        ///< camera
   int frames = 1;                       ///< total number of frames
 };
 

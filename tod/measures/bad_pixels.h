@@ -8,8 +8,8 @@
 
 namespace todbench {
 
-/// Limits above which a pixel is bad. The defaults are common rules, not a standard; an acceptance test states its own
-/// limits.
+/// Limits above which a pixel is bad. The defaults are common rules, not a standard. An acceptance test must state the
+/// limits explicitly.
 struct BadPixelRules {
   double dead_responsivity = 0.25;  ///< limit of |responsivity / median - 1|
   double noisy = 3;                 ///< limit of the temporal standard deviation, as a multiple of the median
@@ -26,7 +26,7 @@ struct PixelProperties {
 /// Bad pixels by rule, and their clusters.
 struct BadPixels {
   cv::Mat1b dead, noisy, offset;  ///< 255 if the pixel exceeds the limit
-  cv::Mat1b bad;                  ///< any of the three
+  cv::Mat1b bad;                  ///< exceeds any of the three limits
   int count = 0;
   int clusters = 0;         ///< number of clusters of at least two touching pixels, also diagonally
   int largest_cluster = 0;  ///< number of pixels; 1 if no bad pixels touch, 0 without bad pixels
@@ -34,7 +34,7 @@ struct BadPixels {
 };
 
 /// Finds bad pixels. Errors: `invalid_input` (no picture, pictures of different sizes, a value that is not finite, or a
-/// median of 0 that a rule needs as its scale).
+/// median of 0 although a rule divides by the median).
 [[nodiscard]] Result<BadPixels> bad_pixels(const PixelProperties& pixels, const BadPixelRules& rules);
 
 }  // namespace todbench

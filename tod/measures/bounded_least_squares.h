@@ -7,9 +7,9 @@
 
 namespace todbench {
 
-/// Minimises q(x) = x'Gx - 2 r'x with low <= x <= high. G is positive semidefinite: it is the Gram matrix of a design
-/// divided by the variance of a sample, so that q is chi-square up to a constant. Columns are scaled to equal length. A
-/// ridge of 1e-13 of this length makes the solution unique if columns are dependent.
+/// Minimises q(x) = x'Gx - 2 r'x with low <= x <= high. G is positive semidefinite: the Gram matrix of a design,
+/// divided by the variance of a sample. q is therefore chi-square except for a constant. Columns are scaled to equal
+/// length. A ridge of 1e-13 of this length makes the solution unique if columns are dependent.
 ///
 /// Active-set method (Stark and Parker 1995). It ends after a finite number of steps and is exact except for rounding.
 /// 36 unknowns take about 50 us without a starting point.

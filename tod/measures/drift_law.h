@@ -41,11 +41,11 @@ struct DriftFit {
 /// Drift of a camera after a correction.
 struct DriftLaw {
   std::vector<double> time_s;  ///< mean times of the groups
-  /// Mean of the picture. Its interval allows for a random change of the mean that is due to the change of the pattern:
-  /// standard deviation of the pattern's change divided by the root of the number of pixels.
+  /// Mean of the picture. The interval includes the random change of the mean due to the change of the pattern:
+  /// standard deviation of the change of the pattern, divided by the root of the number of pixels.
   DriftFit level;
-  /// Standard deviation, over the pixels, of their change since the first group. White noise, mean and shading of
-  /// second order are removed. The change is never negative. If its interval begins at 0, no change is proven.
+  /// Standard deviation over the pixels of the change since the first group, after removal of white noise, mean and
+  /// shading of second order. The change is never negative. If the interval begins at 0, no change is proven.
   DriftFit pattern;
 
   /// Returns a change in kelvin per minute, averaged over the time from the first group to the last.
@@ -57,12 +57,12 @@ inline constexpr std::size_t least_drift_groups = 8;
 
 /// Fits level and pattern as functions of time. Groups are weighted by their number of frames. The level is fitted by
 /// least squares. The pattern is fitted by analysis of variance of the pixels' regressions on time, with modified
-/// large-sample intervals (Graybill and Wang 1980). The fit begins with a straight line. An exponential with the time
-/// constant of least squares replaces it if the residuals are then significantly smaller (F test at 1 %). In the noise
-/// of many pixels, a search for a time constant always finds an exponential that fits a little better than the line.
-/// For the pattern, F is therefore first reduced by 2.5 standard deviations of the improvement that noise alone causes.
-/// Errors: `invalid_input` (fewer than eight groups, groups without frames, times that do not increase, pictures below
-/// 4 x 4 pixels or of different sizes).
+/// large-sample intervals (Graybill and Wang 1980). The fit begins with a straight line. It is replaced by an
+/// exponential, with the time constant of least squares, if the residuals are then significantly smaller (F test at 1
+/// %). With the noise of many pixels, the search for a time constant always finds an exponential that fits slightly
+/// better than the line. For the pattern, F is therefore first reduced by 2.5 standard deviations of the improvement
+/// due to noise alone. Errors: `invalid_input` (fewer than eight groups, groups without frames, times that do not
+/// increase, pictures below 4 x 4 pixels or of different sizes).
 [[nodiscard]] Result<DriftLaw> drift_law(std::span<const DriftGroup> groups);
 
 }  // namespace todbench

@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Properties of an edge, determined before the test.
+/// Properties of an edge that are determined before the test.
 struct EdgeLevels {
   double dark = 0, bright = 0;
   double width_pitch = 0;  ///< distance from 10 to 90 % of the step
@@ -18,8 +18,8 @@ struct EdgeLevels {
   double count_step = 0;   ///< step of a picture of integer counts, otherwise 0
 };
 
-/// Returns the clipped side ("bright" or "dark"); empty if no side is clipped. A side is clipped if its plateau has a
-/// single value although the neighbouring values scatter, or if the profile has a corner at the plateau.
+/// Returns the clipped side ("bright" or "dark"); empty if no side is clipped. A side is clipped in two cases: the
+/// plateau has a single value although the neighbouring values scatter, or the profile has a corner at the plateau.
 [[nodiscard]] std::optional<std::string_view> clipped_side(const std::vector<EdgeSample>& samples,
                                                            const EdgeLevels& levels);
 

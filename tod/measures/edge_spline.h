@@ -26,7 +26,8 @@ struct Spline {
   [[nodiscard]] double slope(double t) const;
 };
 
-/// Normal equations of a fit. They are sums over samples, so a part of the samples can be removed later by subtraction.
+/// Normal equations of a fit. The equations are sums over samples, so a part of the samples can be removed later by
+/// subtraction.
 class SplineSums {
  public:
   explicit SplineSums(const SplineGrid& grid);

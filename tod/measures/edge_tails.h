@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tails of an edge: light that optics and electronics spread over large distances. The model is a bounded mixture of
-// shapes.
+// Tails of an edge: light that optics and electronics spread over large distances. The tails are modelled as a mixture
+// of shapes with bounded shares.
 #pragma once
 
 #include <array>
@@ -15,17 +15,17 @@
 namespace todbench {
 
 /// Model of a picture of cut-outs with level D and step S:
-///     D + (S - sum beta - alpha / k) G + (alpha / k) C + sum beta_i H_i + shading,
+///     D + (S - sum beta - alpha / k) G + (alpha / k) C + sum beta_i H_i + shading.
 /// G is the picture of the cut-outs after a narrow Gaussian blur. C is the picture of the cut-outs after a blur with
 /// the MTF exp(-k f), where k is 2 pi cauchy_pitch and f the frequency in cycles per pitch. H_i is the picture of the
 /// cut-outs after a Gaussian blur of sigma_i = 2 ... 70 pitches, in 23 steps of constant ratio. alpha / S is the slope
-/// of the MTF at frequency 0 due to diffraction, and beta_i / S is the share of halo i. Any positive mixture of
-/// Gaussian halos can be represented, for example exponential and power-law halos. The shapes need to be correct only
+/// of the MTF at frequency 0 due to diffraction, and beta_i / S is the share of halo i. The model can represent any
+/// positive mixture of Gaussian halos, for example exponential and power-law halos. The shapes need to be correct only
 /// outside the core. The core is measured from the residuals, without a model.
 ///
 /// The MTF is relative to a source of the size of the picture. Halos with a sigma above TailBounds::widest_pitch are
-/// fitted, because they distort the picture. They are not part of the MTF, because they lower the contrast of the whole
-/// picture. The MTF therefore refers to the contrast S - sum beta, where the sum is over these wide halos.
+/// fitted, because they distort the picture. These wide halos are not part of the MTF, because they lower the contrast
+/// of the whole picture. The MTF therefore refers to the contrast S - sum beta, where the sum is over these wide halos.
 namespace edge_tails {
 constexpr std::size_t halos = 23;
 constexpr std::size_t level = 0, step = 1, slope = 2, first_halo = 3, first_shading = first_halo + halos;
@@ -39,13 +39,13 @@ constexpr double cauchy_pitch = 0.5;  ///< width of C: its MTF is exp(-2 pi cauc
 /// shading.
 using TailColumns = std::function<void(cv::Point2d at, std::vector<double>& columns)>;
 
-/// A cut-out: its middle, and the vectors from the middle to two of its sides, in pixels.
+/// A cut-out: its middle, and the vectors from the middle to two sides, in pixels.
 struct TailRectangle {
   cv::Point2d middle, half_u, half_v;
 };
 /// Sets the first columns for upright or rotated rectangles.
 void set_tail_columns(const std::vector<TailRectangle>& cut_outs, cv::Point2d at, std::vector<double>& columns);
-/// Sets the first columns for a half plane. `t`: distance from its edge in pitches, positive inside.
+/// Sets the first columns for a half plane. `t`: distance from the edge of the half plane in pitches, positive inside.
 void set_tail_columns(double t, std::vector<double>& columns);
 
 /// Prior bounds of the tails.
@@ -53,8 +53,8 @@ struct TailBounds {
   double least_slope_pitch = 0;  ///< smallest slope of the MTF at frequency 0 due to diffraction, per cycle per pitch
   /// Largest slope of the MTF at frequency 0 due to diffraction, per cycle per pitch.
   double most_slope_pitch = 3;
-  /// Largest share of the contrast in the halos that are part of the MTF. If this bound alone determines an interval,
-  /// the lower limit of the interval is not stated.
+  /// Largest share of the contrast in the halos that are part of the MTF. If only this bound limits an interval, the
+  /// lower limit of the interval is not stated.
   double most_halo = 0.2;
   /// Replaces most_halo if the picture shows a larger share.
   double most_halo_seen = 0.7;
@@ -76,10 +76,10 @@ struct TailBounds {
 
 /// Fit of the model to a picture outside the core of every edge.
 ///
-/// Halos have positive shares: light is only spread. A filter that sharpens the picture adds negative shares. The fit
-/// permits them only if the picture shows them. The shares are then negative up to one sigma, which is at most
-/// TailBounds::widest_pitch, and positive above it. All results include every such sigma that the picture does not
-/// exclude.
+/// Halos have positive shares, because light is only spread. A filter that sharpens the picture adds negative shares.
+/// The fit permits negative shares only if the picture shows them. The shares are then negative up to a limit of sigma,
+/// which is at most TailBounds::widest_pitch, and positive above this limit. All results include every limit of sigma
+/// that the picture does not exclude.
 class TailFit {
  public:
   /// Returns the most likely values of the unknowns, in the order of the columns.
@@ -108,12 +108,13 @@ class TailFit {
  private:
   friend class TailSamples;
   [[nodiscard]] double farthest_wide_share(double sign) const;
-  /// Least squares with halos of certain signs.
+  /// Least-squares problem for given signs of the halos.
   struct Family {
-    std::size_t negative = 0;                            ///< number of the first halos, whose shares are not positive
-    std::shared_ptr<const BoundedLeastSquares> problem;  ///< unknowns, then slacks
-    double variance = 0;                                 ///< of a pixel
-    double above = 0;  ///< chi-square of its minimum minus the least one of all families
+    std::size_t negative = 0;                            ///< number of halos with shares that are not positive; these
+                                                         ///< are the first halos
+    std::shared_ptr<const BoundedLeastSquares> problem;  ///< unknowns, followed by slack variables
+    double variance = 0;                                 ///< variance of a pixel
+    double above = 0;  ///< chi-square at the minimum of this family minus the least chi-square of all families
   };
   std::size_t unknowns_ = 0;
   TailBounds bounds_;
@@ -136,12 +137,12 @@ class TailSamples {
  private:
   [[nodiscard]] TailFit::Family family(const TailBounds& bounds, std::size_t negative, double variance) const;
   [[nodiscard]] TailFit::Family settled(const TailBounds& bounds, std::size_t negative) const;
-  /// Returns the families with negative shares, if the picture shows such shares; otherwise `positive`.
+  /// Returns the families with negative shares if the picture shows negative shares; otherwise `positive`.
   [[nodiscard]] std::vector<TailFit::Family> families(const TailBounds& bounds, const TailFit::Family& positive,
                                                       double level_error) const;
   /// Returns the sum of the squares of the residuals.
   [[nodiscard]] double squares_about(const std::vector<double>& x) const;
-  /// Returns the variance of a pixel from the residuals of a fit. It is larger if the residuals of neighbours are
+  /// Returns the variance of a pixel from the residuals of a fit, increased if the residuals of neighbours are
   /// correlated.
   [[nodiscard]] double variance_about(const std::vector<double>& x) const;
   std::size_t unknowns_;

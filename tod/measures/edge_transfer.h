@@ -15,7 +15,7 @@ struct EdgeWindow {
   [[nodiscard]] double at(double t) const;
 };
 
-/// Sums over all samples, and over groups of neighbouring rows, so that each group can be left out.
+/// Sums over all samples, and over groups of neighbouring rows, for a jackknife over the groups.
 struct EdgeGroups {
   SplineSums all;
   std::vector<SplineSums> groups;
@@ -36,15 +36,15 @@ struct EdgeTransfer {
   std::vector<double> mtf, low, high;
   std::vector<bool> low_known;  ///< false: only TailBounds::most_halo determines `low`
 };
-/// Computes the MTF. It is the modulus of two parts: the transform of the derivative of the profile within the window,
-/// and the transform of the tails outside the window, which is linear in the unknowns of the tails. The MTF is 1 at
-/// frequency 0. It is corrected for the contribution of noise to a modulus.
+/// Computes the MTF. The MTF is the modulus of the sum of two parts: the transform of the derivative of the profile
+/// within the window, and the transform of the tails outside the window. The second part is linear in the unknowns of
+/// the tails. The MTF is 1 at frequency 0, and is corrected for the contribution of noise to a modulus.
 ///
 /// The 95 % intervals combine three contributions: the extremes over all tails with a chi-square of at most 5.99 above
 /// the minimum; the noise (jackknife over the groups); and `rounding`. `rounding`: error of the profile, as a share of
-/// the step, due to rounding to counts if the noise is too small to average it out. `displacement_pitch2`: variance of
-/// the positions of the lines along the normal relative to the straight edge. It lowers the measured MTF, so the upper
-/// limit is increased. The result is empty if a part cannot be fitted.
+/// the step, due to rounding to counts, if the noise is too small to average out the rounding. `displacement_pitch2`:
+/// variance of the positions of the lines along the normal relative to the straight edge. This variance lowers the
+/// measured MTF, so the upper limit is increased. The result is empty if a part cannot be fitted.
 [[nodiscard]] EdgeTransfer edge_transfer(const EdgeGroups& groups, const EdgeWindow& window,
                                          const std::vector<double>& frequency_per_pitch, const EdgeTails& tails,
                                          double rounding, double displacement_pitch2);

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Detects pixels that switch between two levels, or stay on another level for some time.
+// Detects pixels that switch between two levels, or stay on a different level for some time.
 #pragma once
 
 #include <opencv2/core.hpp>
 
 namespace todbench {
 
-/// Limits of a pixel's largest change of level; a pixel that exceeds one of them blinks.
+/// Limits of a pixel's largest change of level. A pixel that exceeds any of these limits blinks.
 struct BlinkingRules {
   /// Limit of the largest change divided by the pixel's noise, as a multiple of the median over the pixels.
   double medians = 3;

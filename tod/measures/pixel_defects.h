@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Defective pixels in a cube of frames of a flat field, and pixels that the camera has substituted.
+// Finds defective pixels in a cube of frames of a flat field, and pixels that the camera has substituted.
 #pragma once
 
 #include <array>
@@ -18,11 +18,12 @@ namespace todbench {
 /// Kinds of defects.
 enum class PixelDefect {
   stuck,         ///< has the same value in every frame
-  offset,        ///< dead or hot pixel: the deviation of its level in the flat field exceeds the limit
-  unresponsive,  ///< dead pixel: the deviation of its response to temperature exceeds the limit
+  offset,        ///< dead or hot pixel: the deviation of the level in the flat field exceeds the limit
+  unresponsive,  ///< dead pixel: the deviation of the response to temperature exceeds the limit
   noisy,
-  blinking,     ///< switches between two levels, or stays on another level for several frames
-  substituted,  ///< equals a neighbour, or the mean of neighbours, in every frame: substituted by the camera
+  blinking,     ///< switches between two levels, or stays on a different level for several frames
+  substituted,  ///< equals a neighbour, or the mean of neighbours, in every frame, because the camera has substituted
+                ///< it
 };
 inline constexpr std::array pixel_defect_kinds{PixelDefect::stuck, PixelDefect::offset,   PixelDefect::unresponsive,
                                                PixelDefect::noisy, PixelDefect::blinking, PixelDefect::substituted};
@@ -66,16 +67,16 @@ struct PixelDefects {
 /// unit of the frames. Errors: `invalid_input` (fewer than 16 frames or fewer than 8 rows or columns, frames of
 /// different sizes, a value that is not finite, no noise, or noise below half a count, which hides defects).
 ///
-/// Stuck: the pixel has a single value. Tested only if this is expected by chance for fewer than 0.01 live pixels.
-/// Offset, response and noise: bad_pixels(). Blinking: tested with at least 48 frames, which are combined into at most
-/// 64 blocks. There are two criteria. The first is the largest difference between the mean of successive blocks and the
-/// mean of all other blocks, divided by its standard uncertainty from successive differences. The second is the
-/// distance of two levels in the best partition of the values into two classes of at least three frames.
+/// Stuck: the pixel has a single value. Tested only if fewer than 0.01 live pixels are expected to have a single value
+/// by chance. Offset, response and noise: bad_pixels(). Blinking: tested with at least 48 frames, which are combined
+/// into at most 64 blocks. There are two criteria. The first is the largest difference between the mean of successive
+/// blocks and the mean of all other blocks, divided by its standard uncertainty from successive differences. The second
+/// is the distance of two levels in the best partition of the values into two classes of at least three frames.
 ///
 /// Substituted: the pixel nearly equals a neighbour, the mean of two to four of the nearest neighbours, or the mean of
-/// all eight neighbours. The variance of the difference is then lower than `chance` permits for a live pixel. It is
-/// compared with the variance of the median pixel by a chi-square test, with a reduced number of frames for noise with
-/// memory. Of two equal pixels, the later one in reading order is regarded as the copy.
+/// all eight neighbours. The variance of the difference is then lower than `chance` permits for a live pixel. A
+/// chi-square test compares this variance with that of the median pixel; for noise with memory, the number of frames is
+/// reduced. If two pixels are equal, the second pixel in reading order is regarded as the copy.
 [[nodiscard]] Result<PixelDefects> pixel_defects(std::span<const cv::Mat1f> frames, const PixelScene& scene,
                                                  const PixelDefectRules& rules);
 

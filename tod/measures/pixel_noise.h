@@ -20,10 +20,10 @@ struct PixelNoise {
   std::pair<double, double> sd_rms_ci95;
   double sd_rms_detrended = 0;      ///< sd_rms after removal of a straight line in time from each pixel (divisor T - 2)
   double sd_frame_differences = 0;  ///< sqrt(mean d^2 / 2) of successive frames; too low by the factor sqrt(1 - rho)
-  /// Mean of the pixels' standard deviations, stated in some data sheets; too low by the factor c4 and because of the
-  /// spread of the pixels.
+  /// Mean of the pixels' standard deviations, stated in some data sheets. It is too low by the factor c4, and also
+  /// because of the spread of the pixels.
   double mean_of_pixel_sd = 0;
-  double c4 = 1;  ///< mean of the standard deviation of T normal values, divided by its true value
+  double c4 = 1;  ///< mean of the standard deviation of T normal values, divided by the true standard deviation
   double mean_of_pixel_sd_corrected = 0;  ///< mean_of_pixel_sd / c4
   double median_pixel_sd = 0;             ///< median of the pixels' standard deviations; insensitive to noisy pixels
   /// Variance of the mean frame over pixels, minus sd_rms^2 / T, the contribution of the temporal noise; signed.
@@ -36,8 +36,9 @@ struct PixelNoise {
 /// (fewer than three frames or two pixels, frames of different sizes, a value that is not finite).
 [[nodiscard]] Result<PixelNoise> pixel_noise(std::span<const cv::Mat1d> frames);
 
-/// Smallest noise that can be measured, in counts. If the noise is below half a count, its measured variance depends on
-/// the position of the mean between two counts. For a noise of 0.3 counts the variance is from 0.10 to 0.17 counts^2.
+/// Smallest noise that can be measured, in counts. If the noise is below half a count, the measured variance depends on
+/// the position of the mean between two counts. For a noise of 0.3 counts, the measured variance is between 0.10 and
+/// 0.17 counts^2.
 inline constexpr double least_measurable_noise_counts = 0.5;
 
 }  // namespace todbench

@@ -16,10 +16,10 @@ struct SubstitutionRules {
 /// Result of substituted_pixels().
 struct SubstitutedPixels {
   cv::Mat1b found;      ///< 255 for a substituted pixel
-  bool tested = false;  ///< true: there are enough frames, and the scale is fine enough
+  bool tested = false;  ///< true: the test was possible, because there are enough frames and the scale is fine enough
 };
 
-/// Finds substituted pixels. `constant`: pixels that never change; they may equal each other without being copies.
+/// Finds substituted pixels. `constant`: pixels that never change. These pixels may be equal without being copies.
 /// Precondition: at least two frames, all of one size.
 [[nodiscard]] SubstitutedPixels substituted_pixels(std::span<const cv::Mat1f> frames, const cv::Mat1b& constant,
                                                    const SubstitutionRules& rules);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fixed pattern of a camera and unevenness of its source, separated by shifting the source (data reference method).
+// Separates the fixed pattern of a camera and the unevenness of the source by shifting the source (data reference
+// method).
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -15,9 +16,9 @@ struct ShiftedPicture {
   cv::Mat1d picture;
 };
 
-/// Model: picture = camera(x) + source(x - shift) + level of the picture. A shift of a linear slope changes only the
-/// level, so a slope cannot be assigned to the camera or to the source. It is removed from both patterns and stated
-/// separately.
+/// Model: picture = camera(x) + source(x - shift) + level of the picture. If a linear slope is shifted, only the level
+/// changes. A slope can therefore not be assigned to the camera or to the source. The slope is removed from both
+/// patterns and stated separately.
 struct SeparatedPattern {
   cv::Mat1d camera;  ///< mean 0, without slope
   cv::Mat1d source;  ///< larger than a picture by the span of the shifts; mean 0, without slope
@@ -27,8 +28,8 @@ struct SeparatedPattern {
 };
 
 /// Separates camera and source by least squares with conjugate gradients. Errors: `invalid_input` (fewer than three
-/// pictures, different sizes, a value that is not finite, or shifts that do not span both axes or have a common
-/// divisor, which leaves a periodic pattern undetermined).
+/// pictures, different sizes, a value that is not finite, shifts that do not span both axes, or shifts with a common
+/// divisor, which do not determine periodic patterns).
 [[nodiscard]] Result<SeparatedPattern> separated_pattern(std::span<const ShiftedPicture> pictures);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Smooth variation across a flat field, caused by optics, shutter and housing and not by the pixels.
+// Smooth variation across a flat field that is caused by optics, shutter and housing, not by the pixels.
 #pragma once
 
 #include <opencv2/core.hpp>

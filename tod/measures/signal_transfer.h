@@ -13,7 +13,7 @@ namespace todbench {
 /// One step: the set temperature and the camera's response.
 struct TemperatureStep {
   double delta_t_k = 0;              ///< effective contrast, or a black body's temperature
-  double signal = 0;                 ///< mean response, in counts or in the camera's own unit
+  double signal = 0;                 ///< mean response, in counts or in the unit of the camera
   std::optional<double> signal_u{};  ///< standard uncertainty of the signal; stated for all steps or for none
 };
 

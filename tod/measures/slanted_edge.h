@@ -20,7 +20,7 @@ enum class EdgeAxis {
 };
 [[nodiscard]] std::string_view to_string(EdgeAxis axis);
 
-/// Tails fitted to the picture of a whole plate.
+/// Tails that were fitted to the picture of a whole plate.
 struct PlateTails {
   TailFit fit;
   TailColumns columns;  ///< columns at positions in the part of the picture with the edge
@@ -33,7 +33,7 @@ inline constexpr double least_wide_share = 0.002;
 /// Options of slanted_edge().
 struct SlantedEdgeOptions {
   std::optional<EdgeAxis> axis{};  ///< empty: determined from the direction of the edge in the picture
-  TailBounds tails{};              ///< bounds for tails fitted to the picture itself
+  TailBounds tails{};              ///< bounds for tails that are fitted to this picture
   /// Tails from a larger picture that contains this picture. Null: the tails are fitted to this picture, outside the
   /// core.
   const PlateTails* plate = nullptr;
@@ -65,9 +65,9 @@ struct SlantedEdge {
   double widest_halo_pitch = 0;  ///< largest sigma of the halos that are part of the MTF
   double halo_allowance = 0;     ///< largest share of the step that the interval allows for halos
   /// Limits of the 95 % interval of the share of the step in halos wider than `widest_halo_pitch`. If the upper limit
-  /// is above least_wide_share, `mtf_low` is lower than `mtf_low_in_picture` by this share.
+  /// is above least_wide_share, `mtf_low` is lower than `mtf_low_in_picture` by the share `wide_halo_most`.
   double wide_halo_least = 0, wide_halo_most = 0;
-  /// The picture is sharpened: halos with negative shares are part of the fit and of the intervals.
+  /// True: the picture is sharpened, and halos with negative shares are part of the fit and of the intervals.
   bool sharpened = false;
   double displacement_pitch = 0;  ///< standard deviation of the lines' positions about the edge; 0 if not significant
   std::optional<double> mtf50_per_pitch;  ///< lowest frequency at which the MTF is 0.5
@@ -75,15 +75,15 @@ struct SlantedEdge {
 };
 
 /// Projects every pixel along the edge, fits a cubic spline with four knots per pitch to the profile, and transforms
-/// the derivative of the spline in closed form. No corrections for bins or finite differences are needed, because there
-/// are none. The frequency axis is along the normal (the cosine of the angle is included). Intervals combine three
-/// contributions: a jackknife over groups of neighbouring lines with Student's t, the extremes of the tails, and the
-/// error of the method (0.0005 up to half a cycle per pitch, see docs/method/physical-measures.md). The MTF is relative
-/// to a source of the size of the picture (edge_tails.h).
+/// the derivative of the spline in closed form. No corrections for bins or finite differences are needed, because the
+/// method does not use them. The frequency axis is along the normal (the cosine of the angle is included). Intervals
+/// combine three contributions: a jackknife over groups of neighbouring lines with Student's t, the extremes of the
+/// tails, and the error of the method (0.0005 up to half a cycle per pitch, see docs/method/physical-measures.md). The
+/// MTF is relative to a source of the size of the picture (edge_tails.h).
 ///
 /// Precondition: one straight edge with a flat field on both sides, in any linear unit. Errors: `invalid_input` (an
 /// edge that does not exceed the noise, is partly outside the picture or closer than 5 pitches to its border, is bent,
-/// or is clipped; a slant of less than a pitch over the picture or of more than 46 degrees, or a slant with gaps
+/// or is clipped; a slant of less than a pitch over the picture or of more than 46 degrees; a slant that leaves gaps
 /// between the samples).
 [[nodiscard]] Result<SlantedEdge> slanted_edge(const cv::Mat1d& picture, const SlantedEdgeOptions& options);
 

@@ -33,14 +33,14 @@ struct StarEdge {
   double edge_deg = 0;    ///< direction from the centre outwards, from +x towards +y (down), 0 to 360
   double normal_deg = 0;  ///< direction of the MTF, from +x towards +y, 0 to 180
   StarDirection direction = StarDirection::central;
-  cv::Rect region{};                      ///< part of the picture that contains no other edge
+  cv::Rect region{};                      ///< part of the picture that contains only this edge
   std::optional<SlantedEdge> measured{};  ///< result of slanted_edge(); empty: rejected
   std::string rejected{};                 ///< reason for the rejection; otherwise empty
 };
 
-/// Finds the edges on circles round the centre and measures each edge in its own region (slanted_edge()). Edges are in
-/// the order of edge_deg. Errors: `invalid_input` (a star that extends beyond the picture, a radius below 30 pixels, an
-/// odd number of edges or fewer than 4, edges closer than 15 degrees, or no edge that can be measured).
+/// Finds the edges on circles round the centre and measures each edge in a separate region (slanted_edge()). Edges are
+/// in the order of edge_deg. Errors: `invalid_input` (a star that extends beyond the picture, a radius below 30 pixels,
+/// an odd number of edges or fewer than 4, edges closer than 15 degrees, or no edge that can be measured).
 [[nodiscard]] Result<std::vector<StarEdge>> slanted_star(const cv::Mat1d& picture, const StarPlace& star,
                                                          const SlantedEdgeOptions& options);
 

@@ -22,7 +22,7 @@ struct StepSeries {
 /// Properties of camera and target.
 struct StepResponseOptions {
   double frame_s = 0;     ///< frame interval, > 0; exposure and readout of a frame are shorter than this interval
-  double settling_s = 0;  ///< time after which at most `settling_left` of the target's step remains
+  double settling_s = 0;  ///< time after which at most the share `settling_left` of the target's step remains
 };
 /// Share of a step that may remain after the settling time of the target.
 inline constexpr double settling_left = 0.001;
@@ -56,17 +56,17 @@ struct StepResponse {
 inline constexpr std::size_t least_steps = 4;
 
 /// Fits y = a + g exp(-t / T) with one T for all steps, by least squares. The time of the step is not known on the
-/// clock of the frames, so amplitudes are free parameters. The fit of a step begins one frame interval and the settling
-/// time after the first frame that shows the step, because the exposures then begin after the step. From this frame on,
-/// successive differences decrease by the factor exp(-frame / T) for any exposure. There are two estimates of the
-/// interval: the range in which the sum of squares is compatible with chance (F test, 95 %), and a jackknife over the
-/// steps (Student's t). The wider one is used. If there is a settling time, the interval includes the remainder of the
-/// target's step.
+/// clock of the frames, so amplitudes are free parameters. The fit of a step begins one frame interval plus the
+/// settling time after the first frame that shows the step. All exposures from then on begin after the step. From this
+/// frame on, successive differences decrease by the factor exp(-frame / T) for any exposure. There are two estimates of
+/// the interval: the range in which the sum of squares is compatible with chance (F test, 95 %), and a jackknife over
+/// the steps (Student's t). The wider interval is used. If there is a settling time, the interval includes the
+/// remainder of the target's step.
 ///
 /// Errors: `invalid_input` (fewer than four steps, or samples that cannot be fitted); `calibration` if no time constant
-/// can be determined. The causes of `calibration` are: no step exceeds the noise; no signal remains after the first
-/// frames, because the camera is too fast for its frame rate or the target settles too slowly; the response is longer
-/// than the recording; the response is not of first order.
+/// can be determined. The causes are: no step exceeds the noise; no signal remains after the first frames, because the
+/// camera is too fast for its frame rate or the target settles too slowly; the response is longer than the recording;
+/// the response is not of first order.
 [[nodiscard]] Result<StepResponse> step_response(std::span<const StepSeries> steps, const StepResponseOptions& options);
 
 }  // namespace todbench

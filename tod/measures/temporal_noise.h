@@ -17,7 +17,7 @@ namespace todbench {
 struct TimedPicture {
   cv::Mat1f picture;
   std::uint64_t sequence = 0;  ///< counts exposures; a gap is a missing frame
-  int segment = 0;  ///< Changes at a correction of the camera. Pictures of different segments are not compared.
+  int segment = 0;  ///< changes at a correction of the camera; pictures of different segments are not compared
 };
 
 /// Result of temporal_noise(), in the unit of the pictures.
@@ -31,20 +31,21 @@ struct TemporalNoise {
   std::vector<int> lags;
   std::vector<double> structure;
   /// Structure function at the longest lag with enough pairs, divided by that of successive frames. Changes of whole
-  /// frames are removed from both values, because they do not affect decisions. The ratio is the noise of a single
-  /// frame divided by the noise in successive frames, if the noise is independent at this lag. 1 for white noise.
+  /// frames are removed from both values, because these changes do not affect decisions. If the noise is independent at
+  /// the longest lag, the ratio is the noise of a single frame divided by the noise in successive frames. 1 for white
+  /// noise.
   double whole_to_successive = 1;
   /// Lag-1 correlation of a pixel for noise of first order, without changes of whole frames; empty: too few frames.
   std::optional<double> lag1_correlation;
-  /// Whether the noise differs between the first and the second half of the successive frames. Two conditions must be
-  /// met for the mean squares of the halves, without changes of whole frames. First, their ratio is above 1.15 (7 % of
-  /// the noise). Chance exceeds this limit in less than 1e-9 of all recordings, even if whole rows or columns cause the
-  /// noise. Second, they differ by more than five standard errors, which are computed from the scatter between pairs of
-  /// frames. The second condition is needed because some cameras disturb single frames. False for fewer than eight
-  /// pairs.
+  /// Whether the noise differs between the first and the second half of the successive frames. The mean squares of the
+  /// halves, without changes of whole frames, must meet two conditions. First, the ratio of the mean squares is above
+  /// 1.15 (7 % of the noise). Chance exceeds this limit in less than 1e-9 of all recordings, even if whole rows or
+  /// columns cause the noise. Second, the mean squares differ by more than five standard errors, which are computed
+  /// from the scatter between pairs of frames. The second condition is needed because some cameras disturb single
+  /// frames. False for fewer than eight pairs.
   bool changes = false;
-  /// Not 0: usable. 0: the pixel never changes, or it has more than twice the noise of the median pixel, which
-  /// indicates that the scene moved there.
+  /// Not 0: the pixel is usable. 0: the pixel never changes, or has more than twice the noise of the median pixel,
+  /// which indicates a moving scene.
   cv::Mat1b usable;
   double usable_share = 1;  ///< share of usable pixels
 };
@@ -57,15 +58,15 @@ inline constexpr int longest_lag = 64;
 [[nodiscard]] Result<TemporalNoise> temporal_noise(std::span<const TimedPicture> pictures);
 
 /// Returns whether a jump of the level of whole frames is permanent, as after a correction. `before` and `behind`:
-/// levels of successive frames before and after the jump. True if the means of the two differ by more than six standard
-/// errors of the difference. Also true if the test is not possible: fewer than five frames in total, or no frames
-/// before or after the jump.
+/// levels of successive frames before and after the jump. True if the means of `before` and `behind` differ by more
+/// than six standard errors of the difference. Also true if the test is not possible: fewer than five frames in total,
+/// or no frames before or after the jump.
 [[nodiscard]] bool level_stays_changed(std::span<const double> before, std::span<const double> behind);
 
 /// Returns whether two mean squares of successive differences have a ratio above 1.15 (7 % of the noise), and above the
 /// value that chance exceeds in less than 1e-9 of all recordings. `samples`: number of differences in each mean square
-/// that are independent except for common frames, whose correlation of -1/2 is taken into account. If one mean square
-/// is 0, any other value differs.
+/// that are independent, except for the correlation of -1/2 due to common frames, which is taken into account. If one
+/// mean square is 0, every other value differs from it.
 [[nodiscard]] bool mean_squares_differ(double before, double after, double samples);
 
 /// Returns the lag-1 correlation rho of noise of first order (Box and Jenkins 1970, 3.2.3). `ratio`: squared structure

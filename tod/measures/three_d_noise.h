@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Noise of a sequence of frames by direction: time, rows, columns and all of their combinations.
+// Noise of a sequence of frames by direction: time, rows, columns and all combinations of these.
 #pragma once
 
 #include <array>
@@ -57,12 +57,12 @@ struct NoiseTable {
   int frames = 0, rows = 0, columns = 0;
   ByComponent mean_squares;        ///< mean squares in the squared unit of the frames
   ByComponent degrees_of_freedom;  ///< t T-1, v V-1, h H-1, and their products
-  /// First-order correlation rho of tvh in successive frames, for which the estimates are corrected; below 1. 0:
-  /// analysis of variance with independent cells. If the noise has memory, its variance over T frames is too small, and
-  /// more than 1/T of the variance remains in the mean frame. The mean squares Q have the expectations E Q_tvh = h
-  /// tvh^2 and E Q_vh = T vh^2 + g tvh^2 with g = 1 + 2 sum over k < T of (1 - k / T) rho^k and h = 1 - (g - 1) / (T -
-  /// 1). For example, with rho = 0.8 and 64 frames, the uncorrected noise is 6 % too low, and there is an apparent
-  /// fixed pattern of a third of the noise.
+  /// First-order correlation rho of tvh in successive frames, below 1. The estimates are corrected for this
+  /// correlation. 0: analysis of variance with independent cells. If the noise has memory, its variance over T frames
+  /// is too small, and more than 1/T of the variance remains in the mean frame. The mean squares Q have the
+  /// expectations E Q_tvh = h tvh^2 and E Q_vh = T vh^2 + g tvh^2 with g = 1 + 2 sum over k < T of (1 - k / T) rho^k
+  /// and h = 1 - (g - 1) / (T - 1). For example, with rho = 0.8 and 64 frames, the uncorrected noise is 6 % too low,
+  /// and there is an apparent fixed pattern of a third of the noise.
   double pixel_memory = 0;
 };
 
@@ -104,13 +104,13 @@ class NoiseCube {
   [[nodiscard]] Result<NoiseTable> table_without(const cv::Mat1d& fixed) const;
   /// Returns the mean over all frames. Precondition: at least one frame.
   [[nodiscard]] cv::Mat1d mean_frame() const { return first_ + change_ / frames_; }
-  /// Returns the lag-1 correlation of a pixel after removal of rows, columns and whole frames, in -0.99 to 0.99. It is
-  /// the rho of first-order noise with the same number of frames and the same ratio of mean squared successive
-  /// difference to mean square. Empty: no noise, or fewer than five frames.
+  /// Returns the lag-1 correlation of a pixel after removal of rows, columns and whole frames, in -0.99 to 0.99. The
+  /// result is the rho of first-order noise with the same number of frames and the same ratio of mean squared
+  /// successive difference to mean square. Empty: no noise, or fewer than five frames.
   [[nodiscard]] std::optional<double> lag1_correlation() const;
-  /// Returns NoiseTable::pixel_memory of these frames. It is lag1_correlation() if this value exceeds five standard
-  /// errors and is at most 0.95, otherwise 0. A correlation above 0.95 cannot be distinguished from drift in so few
-  /// frames.
+  /// Returns NoiseTable::pixel_memory of these frames. The result is lag1_correlation() if lag1_correlation() exceeds
+  /// five standard errors and is at most 0.95; otherwise it is 0. A correlation above 0.95 cannot be distinguished from
+  /// drift in so few frames.
   [[nodiscard]] double pixel_memory() const;
   /// Returns the index of the first frame that differs significantly from the previous frame, because of a correction
   /// or a moved scene. The statistic is the mean square of the difference of two successive frames, after removal of
@@ -119,7 +119,7 @@ class NoiseCube {
   /// frame, or fewer than five frames.
   [[nodiscard]] std::optional<int> abrupt_change() const;
   /// Returns whether at most three pairs of successive frames have a mean square difference above 1.3 times the median.
-  /// This is the case if a correction occurred. With more such pairs, the noise changes or the scene moves, and the
+  /// This is true if a correction occurred. With more of these pairs, the noise changes or the scene moves, and the
   /// result of abrupt_change() is meaningless.
   [[nodiscard]] bool few_pairs_stand_out() const;
   /// Returns whether the noise of a pixel differs between the first and the second half of the frames. True if the mean
@@ -127,10 +127,10 @@ class NoiseCube {
   /// exceeds this limit in less than 1e-9 of all recordings. False for fewer than eight frames.
   [[nodiscard]] bool noise_changes() const;
   /// Returns the index of a row at the upper or lower edge that is not part of the picture, for example telemetry. Each
-  /// of the outer four rows is compared with the four rows further inside. A row is outside the picture if one of two
-  /// quantities is much larger than in these rows: the mean square successive difference without changes of the whole
-  /// row (100 times), or the mean difference of adjacent pixels in the mean frame (10 times). Noise and a scene behind
-  /// a lens stay far below both limits. Empty: no such row, or fewer than 16 rows.
+  /// of the outer four rows is compared with the four rows further inside. A row is outside the picture if a quantity
+  /// is much larger than in the rows further inside. The quantities are the mean square successive difference without
+  /// changes of the whole row (100 times), and the mean difference of adjacent pixels in the mean frame (10 times).
+  /// Noise and a scene imaged by a lens are far below both limits. Empty: no such row, or fewer than 16 rows.
   [[nodiscard]] std::optional<int> row_outside_picture() const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two-interval decisions of an observer: share of correct answers computed from its scores, and contrast for 75 %
-// correct answers.
+// Two-interval decisions of an observer: share of correct answers, computed from the scores of the observer, and
+// contrast for 75 % correct answers.
 #pragma once
 
 #include <array>
@@ -21,24 +21,25 @@ struct ShareOfPairs {
   double mean = 0, standard_error = 0;
 };
 
-/// Returns the share of pairs of draws, one from each of `pattern` and `other`, in which the score for `pattern` is
-/// larger. Pairs with equal draw numbers are excluded. Standard error after DeLong et al. (1988), Biometrics 44.
-/// Precondition: at least two draws, all rows of equal length.
+/// Returns the share of pairs of draws in which the score for `pattern` is larger. A pair consists of one draw from
+/// `pattern` and one from `other`. Pairs with equal draw numbers are excluded. Standard error after DeLong et al.
+/// (1988), Biometrics 44. Precondition: at least two draws, all rows of equal length.
 [[nodiscard]] ShareOfPairs share_of_pairs(const IntervalScores& pattern, const IntervalScores& other);
 
-/// Lowest contrast at which the share increases across 75 %, interpolated as probit of the share over ln contrast.
+/// Lowest contrast at which the share increases beyond 75 %. The probit of the share is interpolated linearly in ln
+/// contrast.
 struct PassedContrast {
   std::optional<double> contrast_k;
   double relative_error = 0;
 };
-/// Finds this contrast. `contrast_k` is empty if the shares do not cross 75 %.
+/// Computes this contrast. `contrast_k` is empty if the shares do not increase beyond 75 %.
 [[nodiscard]] PassedContrast passed_contrast(std::span<const double> contrasts_k, std::span<const ShareOfPairs> shares);
 
 /// Psychometric function of the contrast c, Phi(z75 (c / threshold)^exponent): sensitivity d' is a power function of
-/// contrast (Foley and Legge 1981). After sampling, the energy of a pattern depends on its phase p, because its
-/// spectrum interferes with the repeats at integer cycles per sample. The threshold is inversely proportional to the
-/// square root of the energy: threshold = level / sqrt(1 + swing[0] cos(2 pi p) + swing[1] sin(2 pi p)). The sine term
-/// is needed if the position of the pattern has an unknown offset of a fraction of a sample.
+/// contrast (Foley and Legge 1981). After sampling, the energy of a pattern depends on the phase p of the pattern,
+/// because the spectrum interferes with its repeats at integer cycles per sample. The threshold is inversely
+/// proportional to the square root of the energy: threshold = level / sqrt(1 + swing[0] cos(2 pi p) + swing[1] sin(2 pi
+/// p)). The sine term is needed if the position of the pattern has an unknown offset of a fraction of a sample.
 struct ContrastFunction {
   double level_k = 0;             ///< threshold for the mean energy over the phases
   double exponent = 1;            ///< between 0.3 and 8

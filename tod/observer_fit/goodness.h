@@ -16,14 +16,15 @@ namespace todbench {
 
 /// Test statistics. A large value is evidence against the model.
 enum class MisfitKind {
-  contrast_and_size,  ///< number correct by contrast and size: sum of (observed - expected)^2 / variance
-  confusion,    ///< the same sum for the number of answers, by direction of the triangle and by answered direction
-  calibration,  ///< the same sum for the number correct, over groups of patches with similar predicted probability
+  contrast_and_size,  ///< number of correct answers by contrast and size: sum of (observed - expected)^2 / variance
+  confusion,          ///< this sum for the number of answers, by direction of the triangle and by answered direction
+  calibration,        ///< this sum for the number of correct answers, over groups of patches with similar predicted
+                      ///< probability
   /// (s - expectation of s)^2 / variance of s, where s is the sum of -ln p over the answers, and p is the probability
-  /// that the model gives to the chosen alternative.
+  /// of the chosen alternative according to the model.
   surprise,
-  /// As surprise, but only for wrong answers. p is the probability of the chosen alternative, given that the answer is
-  /// wrong.
+  /// As surprise, but only for wrong answers. In this case p is the probability of the chosen alternative, given that
+  /// the answer is wrong.
   wrong_answers,
 };
 inline constexpr std::array all_misfit_kinds{MisfitKind::contrast_and_size, MisfitKind::confusion,
@@ -43,7 +44,7 @@ struct MisfitTest {
 struct AnswerCell {
   int cell = 0;
   double answers = 0, correct = 0;
-  double expected = 0, sd = 0;  ///< expectation and sd of the number correct under the fitted model
+  double expected = 0, sd = 0;  ///< expectation and sd of the number of correct answers under the fitted model
 };
 
 /// Result of goodness_of().

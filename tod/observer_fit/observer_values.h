@@ -16,8 +16,8 @@ enum class FittedKind {
   eye,      ///< factor of the sensitivity of the eye, and contrast_noise of the eye
 };
 
-/// Fitted parameters, named as for a blurred observer. Lapse is the share of answers that do not depend on the patch
-/// and are distributed evenly over the alternatives; it is not a parameter of the template observer.
+/// Fitted parameters, named as for a blurred observer. The lapse is the share of answers that do not depend on the
+/// patch and are distributed evenly over the alternatives. It is not a parameter of the template observer.
 enum class ObserverKey { blur_sigma_samples, internal_noise, sensor_noise_factor, lapse };
 inline constexpr std::array all_observer_keys{ObserverKey::blur_sigma_samples, ObserverKey::internal_noise,
                                               ObserverKey::sensor_noise_factor, ObserverKey::lapse};
@@ -39,7 +39,7 @@ struct ObserverLimits {
   return {{AnswerLattice::least_sigma, AnswerLattice::least_noise, 1, 0}, {AnswerLattice::most_sigma, 5, 10, 0.5}};
 }
 
-/// Coordinates of the search: logarithms of the first three parameters, and the lapse itself.
+/// Coordinates of the search: logarithms of the first three parameters, and the lapse without a transformation.
 using ObserverPlace = std::array<double, observer_key_count>;
 /// Converts values to coordinates; values below the limits are replaced by the limits.
 [[nodiscard]] ObserverPlace place_of(const ObserverValues& values, FittedKind kind = FittedKind::blurred);
@@ -50,7 +50,7 @@ using ObserverPlace = std::array<double, observer_key_count>;
 struct PersonAnswer {
   std::size_t patch = 0;  ///< index in the lattice
   int answer = 0, truth = 0;
-  /// Number of the combination of contrast and size, assigned by the caller. Residuals are grouped by this number.
+  /// Number that the caller assigns to the combination of contrast and size. Residuals are grouped by this number.
   int cell = 0;
 };
 

@@ -10,13 +10,13 @@
 
 namespace todbench {
 
-/// One parameter among several people. Statistics are those of the logarithm of the parameter; for the lapse, of the
-/// lapse itself.
+/// One parameter among several people. Statistics are those of the logarithm of the parameter; the lapse is not
+/// transformed.
 struct PeopleSpread {
-  int persons = 0;             ///< number of persons with a standard error; others are ignored
+  int persons = 0;             ///< number of persons with a standard error; other persons are ignored
   std::optional<double> mean;  ///< mean value (for logarithms: geometric mean); empty for fewer than two persons
   Interval mean_ci95;          ///< after Hartung and Knapp (2001): Student's t with persons - 1 degrees of freedom
-  /// Standard deviation between people of the logarithm of the parameter (of the lapse itself), without the
+  /// Standard deviation between people of the logarithm of the parameter (for the lapse: of the lapse), without the
   /// contribution of the standard errors. Computed by restricted maximum likelihood (Viechtbauer 2005).
   std::optional<double> between_sd;
   Interval between_sd_ci95;               ///< Q profile method (Viechtbauer 2007); the lower limit may be 0

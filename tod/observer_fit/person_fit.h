@@ -19,7 +19,7 @@ struct PersonFitOptions {
   ObserverValues start{0.6, 0.07, 1, 0};
   std::array<bool, observer_key_count> free{};
   enum class Intervals {
-    none,  ///< no intervals, and only few search steps; for answers whose maximum is near the starting point
+    none,  ///< no intervals, and only a few search steps; for answers with a maximum near the starting point
     profile,
   } intervals = Intervals::profile;
 };
@@ -29,22 +29,22 @@ struct PersonFit {
   ObserverValues values{};  ///< fitted values, by ObserverKey
   std::array<bool, observer_key_count> free{};
   /// 95 % intervals by profile likelihood (drop of 3.84 in twice ln likelihood). A side is open if the likelihood does
-  /// not decrease so far within the domain. If the domain has a natural limit on this side (factor 1, lapse 0), the
-  /// side is this limit.
+  /// not decrease by this drop within the domain. If the domain has a natural limit on this side (factor 1, lapse 0),
+  /// the side is this limit.
   std::array<Interval, observer_key_count> ci95{};
   /// Inverse of the expected information for ln sigma, ln n, ln f and the lapse; 0 for parameters that are not free.
   /// Empty if the information is singular, because the answers do not distinguish the parameters.
   std::optional<std::array<std::array<double, observer_key_count>, observer_key_count>> covariance;
-  /// Whether a parameter is at a limit of its domain.
+  /// Whether each parameter is at a limit of its domain.
   std::array<bool, observer_key_count> at_limit{};
   double log_likelihood = 0;
   std::size_t answers = 0;
 };
 
-/// Returns the correlation of two estimates; empty without a covariance, or if one of them is not free.
+/// Returns the correlation of two estimates; empty without a covariance, or if a parameter is not free.
 [[nodiscard]] std::optional<double> correlation(const PersonFit& fit, std::size_t a, std::size_t b);
-/// Returns the standard error of the logarithm of a parameter (of the lapse itself). Empty without a covariance, or if
-/// the parameter is not free.
+/// Returns the standard error of the logarithm of a parameter (for the lapse: of the lapse). Empty without a
+/// covariance, or if the parameter is not free.
 [[nodiscard]] std::optional<double> standard_error(const PersonFit& fit, std::size_t key);
 
 /// Fits the parameters by maximum likelihood from several starting points. Errors: `invalid_input` (no answers, no free

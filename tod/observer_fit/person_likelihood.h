@@ -17,8 +17,9 @@ struct AnswerExpansion {
   std::array<std::array<double, 4>, observer_key_count> slope{};
 };
 
-/// Returns the standard deviation of the noise that the observer adds to a patch, relative to the contrast: sqrt(n^2 +
-/// (f^2 - 1) (q / dT)^2). n: internal noise, f: sensor-noise factor, q: noise of the sensor, dT: contrast.
+/// Returns the standard deviation of the noise that the observer adds to a patch, relative to the contrast. It is
+/// sqrt(n^2 + (f^2 - 1) (q / dT)^2) with n: internal noise, f: sensor-noise factor, q: noise of the sensor, dT:
+/// contrast.
 [[nodiscard]] double own_noise(const AnsweredPatch& patch, const ObserverValues& values);
 /// Returns the probabilities of the four answers to one patch: p = lapse / 4 + (1 - lapse) p_observer. The sum is 1.
 [[nodiscard]] std::array<double, 4> answer_shares(AnswerLattice& lattice, std::size_t patch,
@@ -26,7 +27,7 @@ struct AnswerExpansion {
 /// Computes probabilities and derivatives for one patch.
 [[nodiscard]] AnswerExpansion answer_expansion(AnswerLattice& lattice, std::size_t patch, const ObserverPlace& place);
 
-/// Returns the ln likelihood of the answers, its gradient, and, as second derivatives, minus the expected information
+/// Returns the ln likelihood of the answers and its gradient. The second derivatives are minus the expected information
 /// (for Fisher's scoring). Precondition: a lattice of four alternatives.
 [[nodiscard]] Expansion<observer_key_count> person_likelihood(AnswerLattice& lattice,
                                                               std::span<const PersonAnswer> answers,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Test pictures for projectors, monitors and visible cameras. They consist of known polygons; the level of a pixel is
-// computed from exact covered areas.
+// Test pictures for projectors, monitors and visible cameras. The pictures consist of known polygons; the level of a
+// pixel is computed from the exact area that the polygons cover.
 #pragma once
 
 #include <cstdint>
@@ -25,11 +25,12 @@ struct TodPicture {
 struct MrtdPicture {
   std::vector<double> frequencies_per_px{0.05, 0.1, 0.2, 0.3, 0.4, 0.5};
 };
-/// A straight edge through the middle, rotated from the vertical; dark to the left.
+/// A straight edge through the middle, rotated from the vertical; the left side is dark.
 struct EdgePicture {
   double angle_deg = 5;
 };
-/// A linear ramp, bright on the right. Each pixel has the level at its centre, which equals the mean over the pixel.
+/// A linear ramp, bright on the right. The level of a pixel is that at its centre, which equals the mean over the
+/// pixel.
 struct RampPicture {};
 /// A Siemens star round the middle. The wedges extend to the nearest border and have straight outer ends; the first
 /// wedge begins clockwise from the direction to the right.
@@ -65,8 +66,8 @@ struct TestPicture {
 };
 
 /// Draws a test picture. Errors: `invalid_input` (a picture that is too small for the pattern, invalid or equal levels,
-/// a triangle that does not fit, bars above half a cycle per pixel, or a star that is above half a cycle per pixel
-/// everywhere).
+/// a triangle that does not fit, bars of more than half a cycle per pixel, or a star of more than half a cycle per
+/// pixel everywhere).
 [[nodiscard]] Result<TestPicture> drawn_picture(const PictureRequest& request);
 
 /// Returns the radius in pixels below which the spokes have more than half a cycle per pixel (Nyquist).

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Outlines of a plate's triangles in the picture, and formatting of numbers. Used for registration, shift and contrast.
+// Outlines of a plate's triangles in the picture, and formatting of numbers. Used by the code for registration, shift
+// and contrast.
 #pragma once
 
 #include <fmt/format.h>
@@ -18,7 +19,7 @@ namespace todbench {
   return {p[0] / p[2], p[1] / p[2]};
 }
 
-/// Returns the derivative of the mapping at a position: pixels per millimetre.
+/// Returns the derivative of the mapping at a position, in pixels per millimetre.
 [[nodiscard]] inline cv::Matx22d jacobian(const cv::Matx33d& h, cv::Point2d plate_mm) {
   const cv::Vec3d p = h * cv::Vec3d(plate_mm.x, plate_mm.y, 1);
   const double x = p[0] / p[2];

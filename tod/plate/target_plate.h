@@ -40,16 +40,15 @@ struct PlateBars {
   double angle_deg = 0;     ///< clockwise angle from x to the direction across the bars
 };
 
-/// Orientation in which the plate is held. A mounting changes the positions *and* the directions of the triangles. In
-/// the mean over mountings, the effects of an observer's memory of the plate and of an asymmetric camera therefore
-/// cancel.
+/// Orientation of the plate in its holder. A mounting changes the positions *and* the directions of the triangles. In
+/// the mean over mountings, two effects therefore cancel: an observer's memory of the plate, and an asymmetric camera.
 enum class Mounting { identity, rotated_180, mirrored_horizontally, mirrored_vertically };
 inline constexpr std::array all_mountings{Mounting::identity, Mounting::rotated_180, Mounting::mirrored_horizontally,
                                           Mounting::mirrored_vertically};
 [[nodiscard]] std::string_view to_string(Mounting mounting);
 [[nodiscard]] std::optional<Mounting> mounting_from(std::string_view name);
 
-/// A plate according to its drawing. The true direction of every triangle is always that of the drawing and is never
+/// A plate according to the drawing. The true direction of a triangle is always that of the drawing and is never
 /// determined from the image.
 struct TargetPlate {
   std::string name;
@@ -62,19 +61,19 @@ struct TargetPlate {
   std::vector<PlateBars> bars{};             ///< not used in trials
 };
 
-/// Returns the rectangles of a plate, followed by the single bars of its groups ("NAME, bar 1").
+/// Returns the rectangles of a plate, followed by the single bars of the groups ("NAME, bar 1").
 [[nodiscard]] std::vector<PlateRectangle> straight_cut_outs(const TargetPlate& plate);
 
 /// Checks a plate. Errors: `invalid_input` (an empty plate, a size that is not positive, a repeated name, or a cut-out
 /// that is partly outside the plate or touches another cut-out).
 [[nodiscard]] Result<void> validate(const TargetPlate& plate);
 
-/// Returns the mounting that results from both mountings. Their order does not matter, and each mounting is its own
-/// inverse (Klein four-group).
+/// Returns the mounting that results from both mountings. The order of the mountings has no effect, and the inverse of
+/// each mounting is the same mounting (Klein four-group).
 [[nodiscard]] Mounting combined(Mounting first, Mounting second);
 
 /// Returns the plate as the camera sees it in a mounting. Positions and apexes are transformed, `mounting` is combined
-/// with the present one, and names are not changed.
+/// with the present mounting, and names are not changed.
 [[nodiscard]] TargetPlate mounted(const TargetPlate& plate, Mounting mounting);
 [[nodiscard]] Apex mounted(Apex apex, Mounting mounting);
 

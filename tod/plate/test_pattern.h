@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Direction of the apex, with x right and y down. All lists of alternatives are in this order, which is clockwise.
+/// Direction of the apex, with x right and y down. All lists of alternatives have this order, which is clockwise.
 enum class Apex { up, right, down, left };
 inline constexpr std::array all_apexes{Apex::up, Apex::right, Apex::down, Apex::left};
 

@@ -16,7 +16,7 @@ class AbsoluteTarget {
  public:
   virtual ~AbsoluteTarget() = default;
   /// Returns the lowest and the highest temperature. Errors: `invalid_input` (the black body has no absolute set-point,
-  /// or its reading has a unit other than that of its table), `disconnected`, `interrupted`.
+  /// or its reading is in a different unit than its table states), `disconnected`, `interrupted`.
   [[nodiscard]] virtual Result<std::array<double, 2>> temperatures_k(std::stop_token stop) = 0;
   /// Presents a state like Target::present(), with the black body at `temperature_k`. `state.delta_t_k` is ignored. The
   /// measured temperature is PresentedTarget::black_body_temperature_k.

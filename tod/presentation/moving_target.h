@@ -10,7 +10,8 @@
 
 namespace todbench {
 
-/// A run of the plate along x, in its own plane, as the camera sees it. Lengths as in TargetState::shift_mm.
+/// A run of the plate along x in the plane of the plate, as the camera sees it. Lengths are as in
+/// TargetState::shift_mm.
 struct PlateRun {
   double from_mm = 0, to_mm = 0;
   double speed_mm_s = 1;  ///< above 0
@@ -29,7 +30,7 @@ class MovingTarget {
   virtual ~MovingTarget() = default;
   /// Returns the lowest and highest speed of a run.
   [[nodiscard]] virtual Result<std::array<double, 2>> run_speeds_mm_s(std::stop_token stop) = 0;
-  /// Starts a run along x from the position of the presented state. Returns once the stage reports that the run has
+  /// Starts a run along x from the position of the presented state. Returns when the stage reports that the run has
   /// begun. The next present() ends the run. Errors: `invalid_input` (outside the stage's range), `disconnected`,
   /// `interrupted`.
   [[nodiscard]] virtual Result<PlateRun> run_along_x(double to_mm, double speed_mm_s, std::stop_token stop) = 0;

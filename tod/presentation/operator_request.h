@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Steps by which an operator sets the target to a state, with their values. The user interface writes the sentences.
+// Steps by which an operator sets the target to a state, with their values. The user interface converts the steps to
+// sentences.
 #pragma once
 
 #include <functional>
@@ -40,13 +41,13 @@ struct MoveSlightly {
   bool operator==(const MoveSlightly&) const = default;
 };
 
-/// Step: bring an object much warmer than the plate into the picture, next to the plate, or remove it.
+/// Step: bring an object much warmer than the plate into the picture, next to the plate, or remove this object.
 struct MoveHotBar {
   bool in = true;
   bool operator==(const MoveHotBar&) const = default;
 };
 
-/// Notice that the picture contradicts the last request. The steps of this request follow again.
+/// Notice that the picture contradicts the last request. The steps of the last request follow again.
 struct CheckAgain {
   std::string reason;
   bool operator==(const CheckAgain&) const = default;
@@ -55,7 +56,7 @@ struct CheckAgain {
 /// One step of a request.
 using OperatorStep = std::variant<PutInPlate, Remount, SetContrast, MoveSlightly, MoveHotBar, CheckAgain>;
 
-/// One request to the operator, whose steps are to be carried out in order.
+/// One request to the operator, with steps to be carried out in order.
 struct OperatorRequest {
   std::vector<OperatorStep> steps;  ///< empty: no action needed
   bool operator==(const OperatorRequest&) const = default;
@@ -69,7 +70,7 @@ enum class OperatorAnswer { done, stop };
 using AskOperator = std::function<Result<OperatorAnswer>(const OperatorRequest& request, const std::stop_token& stop)>;
 
 /// Returns the steps from one state to the next. Without a last state, plate and contrast are requested. A move is
-/// requested only if no other step is needed, because handling the plate moves it anyway.
+/// requested only if no other step is needed, because the other steps also move the plate.
 [[nodiscard]] OperatorRequest request_between(const std::optional<TargetState>& last, const TargetState& next);
 
 /// Returns the step as a request, without initial capital and full stop: "set the black body to +2.000 K against the

@@ -30,7 +30,8 @@ struct PlaceInPicture {
 
 /// One answer of an observer.
 struct Trial {
-  std::int64_t presentation = 0;  ///< index of the state shown; trials of one presentation share frame and phase
+  std::int64_t presentation = 0;  ///< index of the presented state; trials of one presentation have the same frame and
+                                  ///< phase
   std::string plate;
   Mounting mounting = Mounting::identity;
   std::string triangle;      ///< name on the plate
@@ -52,8 +53,8 @@ struct Trial {
   /// Probability of the correct answer to the patch, averaged over the internal noise of the observer and over the
   /// frames. Empty: the observer returns only the answer.
   std::optional<double> probability_correct{};
-  /// Number of successive accepted frames over which probability_correct is averaged; `answer` is that to the first
-  /// frame.
+  /// Number of successive accepted frames over which probability_correct is averaged. `answer` is the answer to the
+  /// first frame.
   int frames = 1;
   std::optional<PlaceInPicture> centroid{};  ///< centroid of the triangle; empty: not stated, as in earlier versions
 

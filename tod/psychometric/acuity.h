@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Acuity from size: the reciprocal. Lower and upper limits are exchanged.
+// Converts sizes to acuities, which are the reciprocals. Lower and upper limits are exchanged.
 #pragma once
 
 #include <optional>
@@ -11,12 +11,12 @@ namespace todbench {
 
 /// Returns the acuity in 1/mrad: 1 / threshold in mrad; empty without a positive threshold.
 [[nodiscard]] std::optional<double> acuity_per_mrad(const PsychometricFit& fit);
-/// Returns the threshold if it is determined by the answers. Empty if a side of the interval is open and the verdict is
-/// step, extrapolated or underdetermined. The likelihood is then nearly constant on this side, so the position of its
-/// maximum is arbitrary.
+/// Returns the threshold if the answers determine it. Empty if a side of the interval is open and the verdict is step,
+/// extrapolated or underdetermined. In this case the likelihood is nearly constant on the open side, so the position of
+/// its maximum is arbitrary.
 [[nodiscard]] std::optional<double> stated_threshold(const PsychometricFit& fit);
 /// Removes threshold, intervals and posterior of a fit. Use it if the share of correct answers does not increase with
-/// size: these values then only state the limits of the search or of the prior.
+/// size, because these values then only show the limits of the search or of the prior.
 void remove_threshold(PsychometricFit& fit);
 /// Returns the acuity in 1/mrad: 1 / stated_threshold() in mrad; empty without a positive threshold.
 [[nodiscard]] std::optional<double> stated_acuity_per_mrad(const PsychometricFit& fit);

@@ -101,8 +101,8 @@ template <std::size_t N>
 }
 
 /// Finds a maximum by Newton steps from `start`, with Levenberg-Marquardt damping. A variable at a limit is released
-/// when the gradient points inwards. When the gain of a step is below the rounding error of the value, steps are
-/// accepted if they reduce the gradient. The accuracy of the maximum is therefore limited by the rounding error of the
+/// when the gradient points inwards. If the gain of a step is below the rounding error of the value, the step is
+/// accepted if it reduces the gradient. The accuracy of the maximum is therefore limited by the rounding error of the
 /// gradient, not by that of the value. The search ends if no step improves the result. If the derivatives at `start`
 /// are not finite, `start` is returned unchanged.
 template <std::size_t N, typename Function>
@@ -110,7 +110,8 @@ template <std::size_t N, typename Function>
   for (std::size_t i = 0; i < N; ++i) start[i] = std::clamp(start[i], box.lower[i], box.upper[i]);
   Maximum<N> at{start, function(start), {}};
   double damping = 0;
-  constexpr int max_steps = 80;            // quadratic convergence needs fewer than 10; a ridge may need all
+  constexpr int max_steps = 80;            // quadratic convergence takes fewer than 10 steps; a ridge may take all
+                                           // steps
   constexpr double smallest_step = 1e-14;  // in ln threshold and ln slope
   for (int step_count = 0; step_count < max_steps && is_finite(at.expansion); ++step_count) {
     at.free = free_variables(at.place, at.expansion.gradient, box);

@@ -13,8 +13,8 @@ namespace todbench {
 /// Maximum number of parameters of an estimating equation.
 inline constexpr std::size_t most_parameters = 4;
 
-/// Minimum number of set-ups for a variance over set-ups. With four set-ups there would be three degrees of freedom and
-/// a Student's t of 3.2.
+/// Minimum number of set-ups for a variance over set-ups. Four set-ups would give three degrees of freedom, for which
+/// Student's t is 3.2.
 inline constexpr double least_set_ups = 5;
 
 /// Contribution of one answer to the estimating equation of a quasi-likelihood, in units of sqrt(v), where v(mu) is the
@@ -48,23 +48,23 @@ struct ClusteredVariance {
 ///
 /// Graded answers: with at least `least_set_ups` set-ups, set-ups are the clusters. The phases of one set-up are evenly
 /// spaced from one start, and contrast and registration are measured once per set-up. The scatter over set-ups
-/// therefore contains the variation common to presentations. Because of the even spacing, it is much smaller than the
-/// scatter over single answers; its lower limit is a hundredth of the scatter over single answers. Set-ups that image
-/// triangles onto the same detectors have the same fixed pattern. The covariance of answers of different set-ups at one
-/// position in the picture is therefore added: V_place - V_triangle, where a triangle is the part of a position in one
-/// set-up (two-way, Cameron, Gelbach and Miller 2011). A negative value is set to zero. With fewer set-ups,
-/// presentations and positions are two-way clusters: V_presentation + V_place - V_answer, at least V_presentation and
-/// at least V_place. This variance is never too small, but it is too large if the effects of evenly spread phases
-/// cancel.
+/// therefore contains the variation common to presentations. Because of the even spacing, the scatter over set-ups is
+/// much smaller than the scatter over single answers. Its lower limit is a hundredth of the scatter over single
+/// answers. Set-ups that image triangles onto the same detectors have the same fixed pattern. The covariance of answers
+/// of different set-ups at one position in the picture is therefore added: V_place - V_triangle (two-way, Cameron,
+/// Gelbach and Miller 2011). Here a triangle is the part of a position in one set-up. A negative covariance is set to
+/// zero. With fewer set-ups, presentations and positions are two-way clusters: V_presentation + V_place - V_answer, at
+/// least V_presentation and at least V_place. This variance is never too small. It is too large if the effects of
+/// evenly spread phases cancel.
 ///
 /// Binary answers (`binomial`): for any number of set-ups, presentations and triangles are two-way clusters, with at
-/// least the binomial variance. Set-ups are not the clusters: the binomial scatter is far larger than the variation
-/// common to a set-up, and a variance over eight set-ups has a standard deviation of a quarter. If there is only one
-/// cluster of a kind, the other kind is used.
+/// least the binomial variance. Set-ups are not used as clusters for two reasons: the binomial scatter is far larger
+/// than the variation common to a set-up, and a variance over eight set-ups has a standard deviation of a quarter. If
+/// there is only one cluster of a kind, the other kind is used.
 ///
 /// Degrees of freedom: effective number of clusters minus one. The effective number is (sum of shares)^2 / sum of
-/// squared shares, where a share is that of a cluster in the information (Satterthwaite 1946). For two-way clusters,
-/// the smaller number is used.
+/// squared shares, with the share of each cluster in the information (Satterthwaite 1946). For two-way clusters, the
+/// smaller number is used.
 ///
 /// The variance is infinite if the information is singular, or if a required kind has fewer than two clusters.
 [[nodiscard]] ClusteredVariance clustered_variance(std::span<const AnswerScore> answers, std::size_t parameters,

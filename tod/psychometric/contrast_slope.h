@@ -20,21 +20,22 @@ struct ContrastError {
   double noise_k = 0;  ///< standard error due to the noise of the pixels alone; 0: not known
 };
 
-/// Returns the error of a contrast for reports and schedules: the given error, or the error due to the noise of the
-/// pixels alone if that has the wider 95 % interval. With few set-ups the scatter may be small by chance; the noise of
-/// the pixels is then a lower limit of the error.
+/// Returns the error of a contrast for reports and schedules: the given error, or the error due to pixel noise alone if
+/// the latter has the wider 95 % interval. The reason is that, with few set-ups, the scatter may be small by chance.
+/// Pixel noise is therefore a lower limit of the error.
 [[nodiscard]] ContrastError at_least_the_noise(ContrastError error);
 
 /// Sets the standard errors of the contrasts in the points of a curve, by set contrast. A point without an entry is not
 /// changed.
 void set_contrast_errors(TodCurve& curve, const std::map<double, ContrastError>& errors);
 
-/// Returns the magnitude of the effective contrast, or of the set contrast if the effective one is not known.
+/// Returns the magnitude of the effective contrast, or of the set contrast if the effective contrast is not known.
 [[nodiscard]] double contrast_seen_k(const TodPoint& point);
 
-/// Returns the standard error of the effective contrast; empty if it was measured once and its scatter is not known.
+/// Returns the standard error of the effective contrast; empty if the contrast was measured once and the scatter is not
+/// known.
 [[nodiscard]] std::optional<double> contrast_se_k(const TodPoint& point);
-/// Returns whether the curve has a contrast of unknown scatter.
+/// Returns whether the scatter of a contrast of the curve is unknown.
 [[nodiscard]] bool has_contrast_measured_once(const TodCurve& curve);
 
 /// Returns the degrees of freedom of TodPoint::delta_t_se_k; empty if not stated.
@@ -42,12 +43,12 @@ void set_contrast_errors(TodCurve& curve, const std::map<double, ContrastError>&
 
 /// Returns for each point the magnitude of the slope of ln acuity as a function of ln |effective contrast|. The slope
 /// is that of S75^2 = A + B / C + D / C^2 through the point and its neighbours of the same sign (C: contrast; A:
-/// resolution; B, D: noise). With two points it is the larger of the slopes of A + B / C and A + D / C^2. If no
+/// resolution; B, D: noise). With two points, the slope is the larger of the slopes of A + B / C and A + D / C^2. If no
 /// neighbour has a threshold, the slope is 1, as for an acuity proportional to the contrast.
 [[nodiscard]] std::vector<double> contrast_slopes(const TodCurve& curve);
 
-/// Least magnitude of d ln S75 / d ln contrast that contrast_effects() assumes. The value was determined in simulated
-/// sessions (docs/validation/coverage.md).
+/// Smallest magnitude of d ln S75 / d ln contrast that contrast_effects() assumes. The value was determined in
+/// simulated sessions (docs/validation/coverage.md).
 inline constexpr double measured_contrast_slope = 1.14;
 
 /// Returns for each point the change of ln S75 with ln contrast: contrast_slopes(), but at least
@@ -63,15 +64,15 @@ struct ContrastScatter {
 /// Returns for each point the standard error of the contrast times contrast_effects().
 [[nodiscard]] std::vector<ContrastScatter> contrast_scatter(const TodCurve& curve);
 
-/// Widens the intervals of a fit by a standard uncertainty `u` of ln threshold that does not come from the answers.
-/// Uses Student's t with `degrees_of_freedom`.
+/// Widens the intervals of a fit by a standard uncertainty `u` of ln threshold that is not due to the answers. Uses
+/// Student's t with `degrees_of_freedom`.
 void join_uncertainty(PsychometricFit& fit, double u, std::optional<double> degrees_of_freedom);
 
-/// Adds the scatter of the effective contrast as an uncertainty of S75. The effective contrast is used for the scores,
-/// and S75 is stated at this contrast. Let w be the share of the internal noise of the observer, and d ln S75 / d ln
-/// SNR = -k. A relative error of the contrast changes ln S75 by k w because of the scores, and by k (1 - w) because of
-/// the stated contrast. The sum is k for every w. k is the measured value of 1.14, or the slope of the curve if that is
-/// larger.
+/// Adds the scatter of the effective contrast as an uncertainty of S75. The effective contrast has two uses: the scores
+/// are computed with it, and S75 is stated at it. Let w be the share of the internal noise of the observer, and d ln
+/// S75 / d ln SNR = -k. A relative error of the contrast changes ln S75 by k w because of the scores, and by k (1 - w)
+/// because of the stated contrast. The sum is k for every w. The value of k is 1.14, as measured, or the slope of the
+/// curve if the slope is larger.
 void join_contrast_errors(TodCurve& curve);
 
 }  // namespace todbench

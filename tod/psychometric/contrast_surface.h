@@ -18,7 +18,7 @@ struct ContrastNoise {
 };
 
 /// Returns the coordinate u of a contrast: u = ln(hypot(noise_k / |dT|, n) / n) / ln 5, where n is the internal noise.
-/// u is 0 if the internal noise of the observer dominates. It is 1 at about a fifth of the contrast at which internal
+/// u is 0 if the internal noise of the observer dominates. u is 1 at about a fifth of the contrast at which internal
 /// noise and sensor noise are equal. If the counts are fine enough, contrasts with the same u have the same function.
 [[nodiscard]] double contrast_bend(const ContrastNoise& noise, double delta_t_k);
 /// Returns contrasts, decreasing from `strongest_k` to `weakest_k`, at which tables describe the function. The steps
@@ -44,8 +44,8 @@ class ContrastSurface {
   [[nodiscard]] double ln_threshold(double delta_t_k) const;
   /// Returns the slope of ln_threshold() per unit of ln contrast, from contrasts 1 % above and below.
   [[nodiscard]] double slope(double delta_t_k) const;
-  /// Returns the value at ln(size / mrad). It is interpolated between the functions of the neighbouring tables, shifted
-  /// to the same threshold.
+  /// Returns the value at ln(size / mrad). The value is interpolated between the functions of the neighbouring tables,
+  /// after both were shifted to the same threshold.
   [[nodiscard]] TwinShape::Value at(double ln_size, double delta_t_k) const;
   [[nodiscard]] const ContrastNoise& noise() const { return noise_; }
   /// Returns the standard error of ln_threshold(), from the nearest table.

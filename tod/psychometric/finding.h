@@ -11,17 +11,18 @@
 
 namespace todbench {
 
-/// Subject of a finding. Each comment states the subject, followed by the meaning of value and limit.
+/// Subject of a finding. Each comment describes the subject, then the meaning of value and limit.
 enum class FindingKind {
   deviance,              ///< shape of the answers differs from the model; standard deviations in the stated direction
-  lapse,                 ///< a free lapse explains the answers better; 2 ln likelihood ratio, corrected for clusters
+  lapse,                 ///< a free lapse describes the answers better; 2 ln likelihood ratio, corrected for clusters
   overdispersion,        ///< answers scatter more than chance; ratio of variances
   underdispersion,       ///< answers scatter less than chance; ratio of variances
   extrapolation,         ///< threshold outside the tested sizes; size, nearest tested size
-  slope,                 ///< slope at a limit of its domain; slope, this limit
-  direct_estimate,       ///< fit differs from the estimate without trials; difference in percent, tolerance for both
+  slope,                 ///< slope at a limit of its domain; slope, limit of the domain
+  direct_estimate,       ///< fit differs from the direct estimate, which uses no trials; difference in percent,
+                         ///< tolerance for both
   clipping,              ///< saturated pixels in windows of triangles; share of trials
-  rounding,              ///< a count is wider than the noise; standard deviation of the noise in counts
+  rounding,              ///< a count is larger than the noise; standard deviation of the noise in counts
   temporal_correlation,  ///< successive frames share noise; correlation
   surrogate,             ///< the optics model of the twin does not describe the pictures; chi-square, its limit
   identity,  ///< curves of different plates, of the same answers, or fitted with different functions; no figures

@@ -14,8 +14,8 @@
 
 namespace todbench {
 
-/// Answers at one size (or contrast). Counts have the type double, so that 2e9 trials are possible and non-integer
-/// counts can be detected.
+/// Answers at one size (or contrast). Counts have the type double, to allow 2e9 trials and to detect non-integer
+/// counts.
 struct Level {
   double size = 0;     ///< >= 0; 0 is a catch trial (no triangle)
   double correct = 0;  ///< integer, 0 <= correct <= total; for graded answers the sum of their probabilities
@@ -67,12 +67,12 @@ struct FitOptions {
   bool graded = false;  ///< levels contain graded answers: their counts may be fractional
 };
 
-/// Posterior of the threshold.
+/// Posterior distribution of the threshold.
 struct Posterior {
   double median = 0;
   double low = 0, high = 0;  ///< equal-tailed 95 %
-  /// True if the marginal density at a limit of the prior is above 1 % of its maximum. The prior then determines the
-  /// result, not the data.
+  /// True if the marginal density at a limit of the prior is above 1 % of its maximum. In this case the prior, not the
+  /// data, determines the result.
   bool prior_bound = false;
 };
 
@@ -104,7 +104,7 @@ enum class EstimatorReason {
   plan,     ///< the plan states it
   twin,     ///< there is a simulated twin, and its function is used
   no_twin,  ///< there are only counts, without a simulated sensor
-  person,   ///< a person answered; every person has an individual function
+  person,   ///< a person answered, and every person has an individual function
   modules,  ///< modules follow the sensor, so the function of the sensor alone does not describe the chain
   /// An enhancement package follows the sensor, so the function of the sensor alone does not describe the chain.
   package,
@@ -136,7 +136,7 @@ struct TwinShapeUse {
   double size_ratio = 1;      ///< size at 75 % of these answers divided by that of the twin
   double slope_ratio = 1;     ///< slope at 75 % of these answers divided by that of the twin
   bool slope_fitted = false;  ///< true: slope_ratio was fitted, because the answers required it
-  /// Student's t of an additional parameter: the slope, or a bend if the slope was fitted.
+  /// Student's t of an additional parameter. The parameter is the slope, or a bend if the slope was fitted.
   double departure = 0;
   double departure_limit = 0;        ///< limit of |departure|, exceeded by chance in 1 % of fits
   double departure_shift = 0;        ///< change of ln threshold due to the additional parameter
@@ -147,7 +147,8 @@ struct TwinShapeUse {
   bool operator==(const TwinShapeUse&) const = default;
 };
 
-/// Result of a fit. A poor fit is not an error. It has a verdict, and an interval only if the answers determine it.
+/// Result of a fit. A poor fit is not an error: the result states a verdict, and contains an interval only if the
+/// answers determine the interval.
 struct PsychometricFit {
   FitVerdict verdict = FitVerdict::no_data;
   std::optional<double> threshold;  ///< size at which psi = 0.75 exactly
@@ -156,9 +157,9 @@ struct PsychometricFit {
   Interval ci95;
   Interval ci90;                ///< 90 % interval by profile likelihood (drop 2.71), for equivalence tests
   std::optional<double> slope;  ///< b
-  /// True if the slope is at the upper limit of its domain, 50. The likelihood then increases up to this limit, and the
-  /// intervals are computed with slopes within the domain. If the gap of a step is too narrow for the domain, the
-  /// interval contains the gap.
+  /// True if the slope is at the upper limit of its domain, 50. In this case the likelihood increases up to this limit,
+  /// and the intervals are computed with slopes within the domain. If the answers form a step whose gap is too narrow
+  /// for slopes of the domain, the interval contains the gap.
   bool slope_at_cap = false;
   double lapse = 0;
   std::optional<double> log_likelihood;  ///< ln likelihood without binomial coefficients
@@ -168,10 +169,10 @@ struct PsychometricFit {
   std::optional<Posterior> posterior;
   double trials = 0;
   IntervalKind interval = IntervalKind::independent;
-  /// Number of clusters; 0 if trials are independent. For a quasi-likelihood, effective number of clusters: degrees of
-  /// freedom of the variance plus one.
+  /// Number of clusters; 0 if trials are independent. For a quasi-likelihood, it is the effective number of clusters:
+  /// degrees of freedom of the variance plus one.
   double clusters = 0;
-  /// Ratio of the clustered to the independent variance of ln threshold; ci95 and ci90 already include it. Usually
+  /// Ratio of the clustered to the independent variance of ln threshold, which ci95 and ci90 already include. Usually
   /// below 1 for graded answers.
   double variance_inflation = 1;
   /// Additional standard uncertainty of ln threshold due to the effective contrast and to an uncertain function. It is

@@ -20,8 +20,8 @@ struct PooledLevel {
   [[nodiscard]] double total() const { return right + wrong; }
 };
 
-/// All data of the likelihood. Equal sizes are pooled. Sizes are sorted and relative to a central size, so the unit has
-/// no effect.
+/// All data of the likelihood. Equal sizes are pooled. Sizes are sorted, and are relative to a central size, so their
+/// unit has no effect.
 struct PooledCounts {
   std::vector<PooledLevel> levels;          ///< positive sizes, increasing, total > 0
   double blank_right = 0, blank_wrong = 0;  ///< size 0 (no triangle): psi = chance
@@ -36,16 +36,17 @@ struct PooledCounts {
   [[nodiscard]] std::optional<double> size_at(double ln_size) const;
 };
 
-/// Maximum number of trials of one fit. The ln likelihood of n trials is about n, so its rounding error is 2e-16 n. For
-/// 1e12 trials, the relative error of the drop of 3.84 that defines an interval is below 2e-4; for 1e15 trials it is a
-/// fifth.
+/// Maximum number of trials of one fit. The ln likelihood of n trials is about n, so its rounding error is 2e-16 n. An
+/// interval is defined by a drop of 3.84. The relative error of this drop is below 2e-4 for 1e12 trials, and a fifth
+/// for 1e15 trials.
 inline constexpr double most_trials = 1e12;
 
 /// Whether counts of correct answers are integers or sums of probabilities.
 enum class Counts { whole, fractional };
 
-/// Checks the rows. Sizes are 0 or positive normal numbers (a denormal number has lost digits), counts are as stated,
-/// correct <= total, at most most_trials in total. Error: `invalid_input` with the first invalid row.
+/// Checks the rows. Sizes must be 0 or positive normal numbers (a denormal number has lost digits). Counts must be as
+/// stated by `Counts`, with correct <= total and at most most_trials in total. Error: `invalid_input` with the first
+/// invalid row.
 [[nodiscard]] Result<void> validate(std::span<const Level> levels, Counts counts = Counts::whole);
 
 /// Pools validated rows. Sizes closer than 1e-12 (relative) are one level.
@@ -74,8 +75,8 @@ struct Scores {
 /// Returns the scores at a relative ln size.
 [[nodiscard]] Scores scores_at(PsychometricForm form, const PsychometricPlace& place, double ln_size);
 
-/// Returns the deviance of the model relative to one free probability per level. It is summed level by level to avoid
-/// the loss of digits for large counts.
+/// Returns the deviance of the model relative to one free probability per level. The deviance is summed level by level
+/// to avoid a loss of digits for large counts.
 [[nodiscard]] double deviance(const PooledCounts& counts, PsychometricForm form, const PsychometricPlace& place);
 /// Returns the ln likelihood with one free probability per level (the blank level included).
 [[nodiscard]] double saturated(const PooledCounts& counts);
@@ -97,9 +98,9 @@ struct StepExtent {
   bool any = false;
   std::optional<double> low, high;
 };
-/// Finds this range. `lapse` as in likelihood_limits().
+/// Computes this range. `lapse` as in likelihood_limits().
 [[nodiscard]] StepExtent step_extent(const PooledCounts& counts, std::optional<double> lapse, double least);
-/// Computes these limits. `lapse`: fixed lapse; empty: free in [0, 0.1].
+/// Computes the values of LikelihoodLimits. `lapse`: fixed lapse; empty: free in [0, 0.1].
 [[nodiscard]] LikelihoodLimits likelihood_limits(const PooledCounts& counts, std::optional<double> lapse);
 
 }  // namespace todbench

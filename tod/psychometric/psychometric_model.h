@@ -11,9 +11,9 @@ inline constexpr double min_slope = 0.1;      ///< domain of the slope b
 inline constexpr double max_slope = 50;
 inline constexpr double max_free_lapse = 0.1;  ///< domain of a free lapse
 
-/// A form of the function at one lapse. psi = g + A H and 1 - psi = l + A (1 - H) with g = chance level, l = lapse and
+/// A form of the function at one lapse: psi = g + A H and 1 - psi = l + A (1 - H) with g = chance level, l = lapse and
 /// A = 1 - g - l. H is 1 - exp(-z) (size form) or exp(-z) (acuity form), where z = kappa exp(u) and u = +-b (ln x - ln
-/// x75). kappa(l) is chosen so that psi(x75) = 0.75.
+/// x75). The value of kappa(l) is chosen to make psi(x75) = 0.75.
 struct Link {
   PsychometricForm form = PsychometricForm::size;
   double lapse = 0;
@@ -35,7 +35,7 @@ struct LogProbabilities {
 /// Arguments above 700 are replaced by 700.
 [[nodiscard]] LogProbabilities log_probabilities(const Link& link, double u);
 
-/// Value and partial derivatives of ln psi or ln(1 - psi) in w = ln z and in the lapse at constant w.
+/// Value of ln psi or ln(1 - psi), and partial derivatives with respect to w = ln z and to the lapse at constant w.
 struct LogTerm {
   double value = 0, w = 0, ww = 0, l = 0, ll = 0, wl = 0;
 };
@@ -43,7 +43,7 @@ struct LogTerm {
 struct AnswerTerms {
   LogTerm right, wrong;
 };
-/// Computes the contributions at u. Values above 300 are replaced by 300, so that second derivatives times counts never
+/// Computes the contributions at u. Values above 300 are replaced by 300, so second derivatives times counts never
 /// overflow.
 [[nodiscard]] AnswerTerms answer_terms(const Link& link, double u);
 

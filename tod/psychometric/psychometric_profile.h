@@ -14,20 +14,21 @@ struct ProfileRequest {
   double start_t = 0;          ///< threshold of the maximum, or any threshold in the region of the supremum
   double supremum = 0;         ///< supremum of the log-likelihood
   std::optional<double> se_t;  ///< standard error of t, for the first steps
-  /// Limits of the likelihood, which determine in advance whether there is a crossing on a side.
+  /// Limits of the likelihood, from which it is known in advance whether there is a crossing on a side.
   LikelihoodLimits limits;
   double wide_drop = 0;    ///< 2 (supremum - profile) at the outer crossing
   double narrow_drop = 0;  ///< 2 (supremum - profile) at the inner crossing, <= wide_drop
 };
 
-/// Crossings in t that are nearest to the start on each side. Empty if the likelihood never decreases by the drop.
+/// Crossings in t that are nearest to the start on each side. A crossing is empty if the likelihood never decreases by
+/// the drop.
 struct ProfileCrossings {
   struct Side {
     std::optional<double> wide, narrow;
   };
   Side below, above;
-  /// Point with a likelihood above ProfileRequest::supremum, if the profile contains one: maximise again from this
-  /// point.
+  /// Point with a likelihood above ProfileRequest::supremum, if the profile contains such a point. Maximise again from
+  /// this point.
   std::optional<Maximum<3>> better;
 };
 

@@ -12,8 +12,8 @@
 namespace todbench {
 
 /// Table of ln psi and ln(1 - psi) of one link: piecewise polynomials of degree five in u (Hermite, step 1/16). The
-/// error is below 1e-7. A table value takes a fraction of the time of the functions themselves. Use the table for scans
-/// and integrals, never for a reported likelihood.
+/// error is below 1e-7. A lookup takes a fraction of the time of the functions. Use the table for scans and integrals,
+/// never for a reported likelihood.
 class LinkTable {
  public:
   /// Computes the table of a link.
@@ -35,8 +35,8 @@ class LinkTable {
 };
 
 /// Table of the ln likelihood of one set of counts with one link. One polynomial combines the correct and the wrong
-/// answers of a level, so a value takes a third of the time of LinkTable. Construction takes 1 us per level; use this
-/// table for several hundred values or more.
+/// answers of a level, so a value takes a third of the time that LinkTable needs. Construction takes 1 us per level, so
+/// use this table only for several hundred values or more.
 class CountsTable {
  public:
   /// Computes the table. The arguments must outlive the object.
@@ -80,7 +80,7 @@ struct LikelihoodScan {
 };
 /// Scans the whole domain. The spacing of the thresholds is a fixed part of the width of the function at each slope.
 /// Thresholds are placed around every level, between neighbouring levels, below the lowest level and above the highest
-/// level. The scan therefore finds ridges outside the levels, and steps that lie between two levels.
+/// level. The scan therefore finds ridges outside the levels, and steps between two levels.
 [[nodiscard]] LikelihoodScan scan_likelihood(const PooledCounts& counts, const ScanGrid& grid);
 
 /// Returns the maximum over the domain. `scan`: scan of the same counts, from which the Newton steps start. If the

@@ -37,8 +37,9 @@ struct RampDifference {
 };
 
 /// Fit of P(S, dT) = F(S exp(-a(u)), dT) with a(u) = a0 + a1 u + a2 u^2, where F is the surface and u its
-/// contrast_bend(). ln S75(dT) = ln S75 of the surface + a(u). Quasi-likelihood as in fit_twin_shape(). The stretch
-/// a(u) is constant if the values of u of the answers span less than 0.05, and linear if they span less than 0.3.
+/// contrast_bend(). Therefore ln S75(dT) = ln S75 of the surface + a(u). The fit is by quasi-likelihood as in
+/// fit_twin_shape(). The stretch a(u) is constant if the values of u of the answers span less than 0.05, and linear if
+/// they span less than 0.3.
 class RampFit {
  public:
   /// Fits the answers. Errors: `invalid_input` (no answers, or answers that do not determine the stretch).
@@ -63,7 +64,7 @@ class RampFit {
   std::vector<double> u_;  ///< contrast_bend() of each answer
   ContrastSurface surface_;
   std::size_t powers_ = 3;      ///< number of parameters of the stretch
-  std::size_t parameters_ = 3;  ///< number of parameters; the last one is that of the directions, if it is fitted
+  std::size_t parameters_ = 3;  ///< number of parameters; the last parameter is that of the directions, if it is fitted
   std::array<double, most_parameters> value_{};
 };
 

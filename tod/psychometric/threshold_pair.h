@@ -28,7 +28,7 @@ class ThresholdPair {
   [[nodiscard]] PairMaxima separate_slopes() const;
 
  private:
-  PooledCounts a_, b_;  ///< sizes relative to the same reference
+  PooledCounts a_, b_;  ///< with sizes relative to the same reference
   PsychometricForm form_;
   std::optional<double> lapse_;
   ScanGrid grid_;

@@ -20,9 +20,9 @@ namespace todbench {
 enum class AnswersReason {
   plan,               ///< stated by the plan
   twin,               ///< graded answers: the model observer judges, and the function of the twin is fitted
-  weibull,            ///< a Weibull function is fitted, and its error exceeds the interval of graded answers
+  weibull,            ///< a Weibull function is fitted; the error of its form exceeds the interval of graded answers
   lapse,              ///< the plan has a lapse, but graded answers come from an observer without a lapse
-  adaptive,           ///< in sessions of earlier versions: the schedule is adaptive
+  adaptive,           ///< only in sessions of earlier versions: the schedule is adaptive
   grey_levels,        ///< intervals of graded answers are not validated for contrasts in grey levels
   few_presentations,  ///< too few presentations to estimate the scatter of graded answers
   no_function,        ///< graded answers were recorded, but the twin had no function for the fit
@@ -67,8 +67,8 @@ struct TodPoint {
   double set_delta_t_k = 0;  ///< set contrast, by which the points of two curves are matched
   double delta_t_k = 0;      ///< effective contrast measured by the camera (mean over trials)
   /// Standard error of delta_t_k by contrast_error(), from the measurements (one per set-up and set-point) and their
-  /// triangles. If no triangles are recorded, it is computed from the measurements alone. It is then 0 for a single
-  /// measurement, because the scatter is not known (contrast_se_k()).
+  /// triangles. If no triangles are recorded, it is computed from the measurements alone. In this case it is 0 for a
+  /// single measurement, because the scatter is not known (contrast_se_k()).
   double delta_t_se_k = 0;
   double delta_t_shared_se_k = 0;  ///< part of delta_t_se_k that the scatter over measurements does not contain
   int delta_t_measurements = 0;    ///< number of measurements; 0: not stated
@@ -79,7 +79,7 @@ struct TodPoint {
   std::optional<EstimatorReason> estimator_reason;
   std::optional<AnswersTaken> answers;            ///< empty: not stated
   std::optional<PsychometricFit> free_lapse_fit;  ///< fit of the same answers with a free lapse, as a check
-  bool lapse_warning = false;        ///< the free lapse explains the data significantly better (2 ln LR > 2.71)
+  bool lapse_warning = false;        ///< the free lapse describes the data significantly better (2 ln LR > 2.71)
   std::optional<Adequacy> adequacy;  ///< findings against the threshold; empty: not examined
   /// S75 from the direct estimate, without an assumed psychometric form; only for simulated sensors.
   std::optional<double> direct_s75_mrad;
@@ -109,27 +109,27 @@ struct TodCurve {
   std::vector<ContinuousPoint> continuous{};  ///< curve of a ramp, contrast decreasing; empty: the run had no ramp
 };
 
-/// Smallest gain in twice the ln likelihood with which a free lapse causes a warning. It corresponds to 5 % for a
-/// parameter that is at its bound under the null hypothesis.
+/// Smallest gain in twice the ln likelihood with which a free lapse causes a warning. The value corresponds to 5 % for
+/// a parameter that is at its bound under the null hypothesis.
 inline constexpr double boundary_drop = 2.705543454095404;
 
 /// Groups trials by set contrast, counts them per size and presentation, and fits each group. Intervals are computed
-/// with clusters by presentation and with clusters by position on the plate, because answers at one position have the
-/// same fixed pattern. The wider interval is reported. If all answers of a group are graded, they are fitted by
-/// fit_graded(), and one variance includes both kinds of clusters.
+/// once with clusters by presentation and once with clusters by position on the plate, because answers at one position
+/// have the same fixed pattern. The wider interval is reported. If all answers of a group are graded, they are fitted
+/// by fit_graded(), in which one variance includes both kinds of clusters.
 [[nodiscard]] Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& options);
 
-/// Converts trials to binary answers, each to one frame.
+/// Converts trials to binary answers. Each answer is that to one frame.
 [[nodiscard]] std::vector<Trial> as_binary(std::span<const Trial> trials);
 
 /// Returns the answers with their presentations and places. For binary answers the probabilities are 1 and 0.
 [[nodiscard]] std::vector<GradedAnswer> graded_answers(std::span<const Trial> trials);
 
-/// Returns whether two set contrasts differ by at most 0.5 % of the larger one. They are then regarded as equal.
+/// Returns whether two set contrasts are regarded as equal, because they differ by at most 0.5 % of the larger
+/// contrast.
 [[nodiscard]] bool same_contrast(double a_k, double b_k);
 
-/// Returns the point of a curve with this set contrast. If there are several, it returns the nearest one. Null if there
-/// is none.
+/// Returns the point of a curve with this set contrast; the nearest point if there are several; null if there is none.
 [[nodiscard]] const TodPoint* point_at(const TodCurve& curve, double set_delta_t_k);
 
 }  // namespace todbench

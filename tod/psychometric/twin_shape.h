@@ -15,10 +15,11 @@ namespace todbench {
 class TwinShape {
  public:
   /// Creates the function from ln((P - 1/4) / (1 - P)), which is nearly a straight line in ln size. These values are
-  /// smoothed by local parabolas through seven nodes, weighted by their standard errors. They are then made increasing
-  /// and joined by monotone cubics (Fritsch and Carlson 1980). Outside the nodes at which P differs significantly from
-  /// chance level and from 1, the function is a straight line. Errors: `invalid_input` (sizes that do not increase,
-  /// proportions outside 0 to 1, fewer than five such nodes, or none on one side of 75 %).
+  /// smoothed by local parabolas through seven nodes, weighted by their standard errors. The smoothed values are made
+  /// increasing and joined by monotone cubics (Fritsch and Carlson 1980). Usable nodes are those at which P differs
+  /// significantly from chance level and from 1. Outside these nodes, the function is a straight line. Errors:
+  /// `invalid_input` (sizes that do not increase, proportions outside 0 to 1, fewer than five usable nodes, or no
+  /// usable node on one side of 75 %).
   [[nodiscard]] static Result<TwinShape> of(const ProportionTable& table);
 
   struct Value {
@@ -43,11 +44,12 @@ class TwinShape {
 /// Returns the proportion of correct answers at ln(size / mrad), for a camera whose function is `use`, with a lapse.
 [[nodiscard]] double twin_proportion(const TwinShape& shape, const TwinShapeUse& use, double lapse, double ln_size);
 
-/// Fits the answers again with the function of the twin. The parameter is the ratio of sizes. A second parameter, the
-/// ratio of slopes at 75 %, is added if the answers require it (t test, 1 %). A lapse l changes a proportion P of the
-/// twin to 1/4 + (3/4 - l) (P - 1/4) / (3/4). A free lapse (`options.fixed_lapse` empty) is a further parameter from 0
-/// to 0.1. S75 is the size at 75 % with the lapse. `weibull` is the fit of the same answers by the Weibull function of
-/// `options`. If it has no regular maximum (verdict other than ok and extrapolated), it is returned unchanged.
+/// Fits the answers again with the function of the twin. The fitted parameter is the ratio of sizes. A second
+/// parameter, the ratio of slopes at 75 %, is added if the answers require it (t test, 1 %). A lapse l changes a
+/// proportion P of the twin to 1/4 + (3/4 - l) (P - 1/4) / (3/4). A free lapse (`options.fixed_lapse` empty) is a
+/// further parameter from 0 to 0.1. S75 is the size at 75 % with the lapse. `weibull` is the fit of the same answers by
+/// the Weibull function of `options`. If `weibull` has no regular maximum (verdict other than ok and extrapolated), it
+/// is returned unchanged.
 ///
 /// The fit is by quasi-likelihood, as in fit_graded(). Binary answers have probabilities of 1 and 0, and binomial
 /// scatter (clustered_variance.h). Intervals are symmetric in ln threshold. The half-width is Student's t times the

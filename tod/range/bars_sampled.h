@@ -24,7 +24,8 @@ class BlurredBars {
 };
 
 /// Modulation after sampling: mean of the largest samples of the bars minus mean of the smallest samples of the gaps.
-/// The samples of a bar or gap are those within max(w / 2, 1 / 2) of its centre, where w is the width.
+/// The samples of a bar or gap are those within max(w / 2, 1 / 2) of its centre, where w is the width of the bar or
+/// gap.
 struct BarModulation {
   double best = 0, mean = 0, worst = 0;  ///< over the phases
   double best_phase_pitch = 0;           ///< position of the lattice relative to the middle of the pattern
@@ -33,8 +34,8 @@ struct BarModulation {
 };
 /// Computes the modulation at the phases (i + 1/2) / phases - 1/2 pitch. Precondition: phases >= 1.
 [[nodiscard]] BarModulation bar_modulation(const BlurredBars& bars, int phases = 64);
-/// Computes the modulation of any profile, for example a measured one. `profile`: function of the position in pitches;
-/// it is evaluated up to 7 / (4 f) + 1 / 2 from the middle.
+/// Computes the modulation of any profile, for example of a measured profile. `profile`: function of the position in
+/// pitches, evaluated up to 7 / (4 f) + 1 / 2 from the middle.
 [[nodiscard]] BarModulation bar_modulation(const std::function<double(double)>& profile, double frequency_per_pitch,
                                            int phases = 64);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ranges from criteria for a target: cycles (ACQUIRE, MTDP-like) or values (TTP metric). Pure functions of curves and
-// air.
+// Computes ranges from criteria for a target: cycles (ACQUIRE, MTDP-like) or values (TTP metric). Pure functions of
+// curves and air.
 #pragma once
 
 #include <functional>
@@ -22,12 +22,13 @@ struct CriterionTarget {
   double contrast = 0;  ///< contrast at the target, > 0; in kelvin for an MRTD, luminance contrast for a CTF
 };
 
-/// Resolution at an apparent contrast, per milliradian of the size of the target. It is the highest resolved frequency,
-/// or the integral of the TTP metric. It does not decrease with increasing contrast. Empty if the contrast is below the
+/// Resolution at an apparent contrast, per milliradian of the size of the target: the highest resolved frequency, or
+/// the integral of the TTP metric. It does not decrease with increasing contrast. Empty if the contrast is below the
 /// curve.
 using ResolvedPerMrad = std::function<std::optional<double>(double apparent_contrast)>;
 /// Returns the resolution for ACQUIRE: the highest frequency in cycles/mrad at which the value of the curve is at most
-/// the contrast. If the contrast is above all values of the curve, it is the last frequency, without extrapolation.
+/// the contrast. If the contrast is above all values of the curve, the resolution is the last frequency, without
+/// extrapolation.
 [[nodiscard]] ResolvedPerMrad resolved_cycles(LogLinearCurve curve);
 /// Returns the resolution for the 2-D frequency of ACQUIRE, sqrt(f_h f_v) at the same contrast.
 [[nodiscard]] ResolvedPerMrad resolved_cycles(LogLinearCurve horizontal, LogLinearCurve vertical);
@@ -51,8 +52,8 @@ struct RangeSensitivity {
     return to_contrast > to_size ? DominantLimit::contrast : DominantLimit::resolution;
   }
 };
-/// Computes both by differences of 1 %. `range`: function of (size factor, contrast factor) that returns a range. Empty
-/// if the function returns no value.
+/// Computes both sensitivities from differences of 1 %. `range`: function of (size factor, contrast factor) that
+/// returns a range. Empty if `range` returns no value.
 [[nodiscard]] std::optional<RangeSensitivity> sensitivity_of(
     const std::function<std::optional<double>(double size_factor, double contrast_factor)>& range);
 
@@ -62,10 +63,10 @@ struct RangeSensitivity {
                                                     const Transmittance& air, const Criterion& criterion,
                                                     double range_m);
 
-/// The range at which a probability is reached, or the reason why there is no such range.
+/// The range at which a probability is reached, or the reason why there is no range.
 struct CriterionRange {
   std::optional<double> range_m;
-  std::optional<double> at_least_m;  ///< if there is no range: the probability is higher up to this range
+  std::optional<double> at_least_m;  ///< if there is no range: distance up to which the probability is higher
   std::string reason;                ///< a sentence; empty if there is a range
   std::optional<RangeSensitivity> sensitivity;
 };

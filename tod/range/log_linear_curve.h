@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A threshold as a function of frequency (MRTD or contrast threshold function). It is given by points; its logarithm is
-// interpolated linearly.
+// A threshold as a function of frequency (MRTD or contrast threshold function), given by points. The logarithm of the
+// threshold is interpolated linearly.
 #pragma once
 
 #include <optional>
@@ -30,8 +30,8 @@ class LogLinearCurve {
   [[nodiscard]] std::optional<double> at(double frequency) const;
   /// Returns the highest frequency at which the curve is at most `value`. Empty if all points are above `value`.
   [[nodiscard]] std::optional<double> highest_frequency_at(double value) const;
-  /// Returns the integral of sqrt(value / curve) over all frequencies at which the curve is below `value`. It is
-  /// computed in closed form between points. 0 if the curve is above `value` everywhere.
+  /// Returns the integral of sqrt(value / curve) over all frequencies at which the curve is below `value`. The integral
+  /// is computed in closed form between points. 0 if the curve is above `value` everywhere.
   [[nodiscard]] double root_excess_integral(double value) const;
 
  private:

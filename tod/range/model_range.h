@@ -25,7 +25,7 @@ struct ModelRange {
   std::string criterion;  ///< name of the criterion: "M75", "N50", "V50"
   double criterion_value = 0;
   std::string probability_form;    ///< name of the form
-  std::string reads;               ///< one sentence about the input of the model and the source of this input
+  std::string reads;               ///< one sentence that states the input of the model and the source of this input
   std::string criterion_origin{};  ///< a phrase that states observers, targets and source of the criterion
   std::string display{};           ///< one sentence about the contrast on the display that the model assumes
   std::optional<double> r50_m{}, r75_m{};

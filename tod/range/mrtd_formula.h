@@ -5,14 +5,14 @@
 namespace todbench {
 
 /// Standard deviations of the other components of three-dimensional noise, divided by that of tvh (t: time, v: rows, h:
-/// columns). A component that is constant across the bars changes bars and spaces equally. Therefore tv and v do not
-/// affect the horizontal MRTD, and th and h do not affect the vertical MRTD.
+/// columns). A component that is constant across the bars changes bars and spaces equally. The horizontal MRTD
+/// therefore does not depend on tv and v, and the vertical MRTD does not depend on th and h.
 struct NoiseRatios {
   double vh = 0, th = 0, tv = 0, h = 0, v = 0;
 };
 
 /// Parameters of an MRTD formula with the structure of FLIR92. Results differ from those of the program FLIR92. SNR
-/// threshold and integration time determine the scale and depend on the laboratory.
+/// threshold and integration time determine the scale of the MRTD, and depend on the laboratory.
 struct MrtdFormula {
   double pitch_mrad = 1;           ///< pitch of the samples, both axes
   double netd_k = 0.1;             ///< noise tvh of one frame
@@ -39,14 +39,13 @@ enum class BarAxis { horizontal, vertical };
 /// where u is the frequency of the noise, p the pitch of the samples, and N the transfer function of the noise filter.
 /// - E_L: over the length of a bar. It is the same integral with 7 w in place of w.
 /// - F_w and F_L: as E_w and E_L, but for the fixed offsets (vh). If n samples along an axis share a detector, they
-/// have the same offset. The integrand is therefore multiplied by shared_density(n, u p), the spectral density of such
-/// offsets. At low frequencies it is n, so the offsets count like those of samples at the pitch of the detectors. For
-/// n = 1, F_w = E_w and F_L = E_L.
-/// Preconditions: all values > 0.
+/// have the same offset. The integrand is therefore multiplied by shared_density(n, u p), the spectral density of
+/// common offsets. At low frequencies this density is n, so the offsets have the same effect as those of samples at the
+/// pitch of the detectors. For n = 1, F_w = E_w and F_L = E_L. Preconditions: all values > 0.
 [[nodiscard]] double perceived_noise_k(const MrtdFormula& formula, double frequency_per_mrad, BarAxis axis);
 
 /// Returns the spectral density of noise common to n neighbouring samples, relative to independent samples of the same
-/// variance: sum over |k| < n of (1 - |k| / n) cos(2 pi f k), where f is the frequency in cycles per sample.
+/// variance. It is the sum over |k| < n of (1 - |k| / n) cos(2 pi f k), where f is the frequency in cycles per sample.
 /// Precondition: n > 0.
 [[nodiscard]] double shared_density(int n, double cycles_per_sample);
 
@@ -55,7 +54,7 @@ enum class BarAxis { horizontal, vertical };
 /// Precondition: mtf > 0.
 [[nodiscard]] double mrtd_k(const MrtdFormula& formula, double frequency_per_mrad, double mtf, BarAxis axis);
 /// Returns (pi / 2) perceived noise / modulation at the best phase. With fine sampling the modulation is 4 / pi MTF,
-/// and the result is the MRTD. This is a working definition; results differ from those of the program TRM.
+/// and the result is the MRTD. This is a working definition, and results differ from those of the program TRM.
 /// Precondition: modulation > 0.
 [[nodiscard]] double mtdp_like_k(const MrtdFormula& formula, double frequency_per_mrad, double modulation,
                                  BarAxis axis);

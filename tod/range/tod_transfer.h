@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts a TOD curve to frequencies of four bars that have the same threshold contrast, by an empirical function.
+// Converts a TOD curve, by an empirical function, to frequencies of four bars that have the same threshold contrast.
 #pragma once
 
 #include <optional>
@@ -14,8 +14,8 @@
 namespace todbench {
 
 /// A transfer f = k A from the acuity A = 1 / S75 to the frequency f of four bars at the same contrast. k is a sigmoid
-/// of ln(A / A0) between two levels; A0 is the acuity at the highest contrast of the curve, its asymptote. A published
-/// parameter set is never changed; a change gets a new name.
+/// of ln(A / A0) between two levels. A0 is the asymptote of the curve: the acuity at the highest contrast. A published
+/// parameter set is never changed; a changed set has a new name.
 struct TodTransfer {
   std::string_view name;      ///< versioned name
   std::string_view observer;  ///< observer who judged triangles and bars; the transfer is valid only for this observer
@@ -27,7 +27,7 @@ struct TodTransfer {
   double least = 0;                ///< lowest studied A / A0
   /// Smallest (contrast / noise per sample) at which a curve has reached its asymptote.
   double asymptote_over_noise = 0;
-  double half_width_ln = 0;  ///< half-width of the 95 % interval of ln f for an imager that was not studied
+  double half_width_ln = 0;  ///< half-width of the 95 % interval of ln f for an imager that was not part of the study
   /// Strongest edge filter of the camera (SensorSpec::edge_boost) for which the transfers are valid.
   static constexpr double highest_edge_boost = 0.2;
 };
@@ -42,8 +42,8 @@ struct TodTransfer {
 
 /// A TOD curve as frequencies of bars.
 struct TransferredCurve {
-  /// Points of the curve; s75_mrad is 1 / f. Intervals combine the intervals of S75 and of A0. They do not include the
-  /// error of the transfer, which is common to all points (TodTransfer::half_width_ln).
+  /// Points of the curve; s75_mrad is 1 / f. Intervals combine the intervals of S75 and of A0. The error of the
+  /// transfer is common to all points (TodTransfer::half_width_ln) and is not included.
   std::vector<TodThreshold> points;
   std::vector<std::string> notes;  ///< one sentence for each omitted threshold
 };

@@ -16,18 +16,18 @@ struct TransmittancePoint {
   double transmittance = 1;  ///< 0 to 1
 };
 
-/// Band transmittance as a function of range. The mean over a band is not an exponential function of the range. Strong
-/// lines are absorbed first, so the effective extinction -ln(tau) / R decreases with range. Immutable, thread-safe.
+/// Band transmittance as a function of range. It is not an exponential function of the range: strong lines are absorbed
+/// first, so the effective extinction -ln(tau) / R decreases with range. Immutable, thread-safe.
 class Transmittance {
  public:
   /// Returns the transmittance exp(-K R).
   [[nodiscard]] static Transmittance beer_lambert(double extinction_per_km);
   /// Interpolates a table. The range must increase from row to row, and the transmittance must not increase. A row at 0
   /// m must have the transmittance 1. Between rows ln(-ln tau) is linear in ln R. Below the first row this line is
-  /// continued towards tau = 1. Next to a row with a transmittance of exactly 1, -ln tau is linear in R. Rows below
-  /// 1e-8 are dropped, because this is the lower limit of programs that write such tables. Undefined beyond the last
-  /// row. Errors: `invalid_input` (no rows, fewer than two usable rows above 0 m, unsorted or repeated ranges, a
-  /// transmittance outside 0 to 1, or a transmittance that increases).
+  /// continued towards tau = 1. In the intervals next to a row with a transmittance of exactly 1, -ln tau is linear in
+  /// R. Rows below 1e-8 are dropped, because 1e-8 is the lower limit of programs that write these tables. Undefined
+  /// beyond the last row. Errors: `invalid_input` (no rows, fewer than two usable rows above 0 m, unsorted or repeated
+  /// ranges, a transmittance outside 0 to 1, or a transmittance that increases).
   [[nodiscard]] static Result<Transmittance> of_table(std::span<const TransmittancePoint> rows);
   /// Returns the weighted mean of exp(-k_i R), the law of Beer and Lambert at every wavelength. It is exact at every
   /// range. Preconditions: the same number of weights and extinctions, at least one of each; weights >= 0 and not all
@@ -40,8 +40,8 @@ class Transmittance {
   [[nodiscard]] std::optional<double> at(double range_m) const;
   /// Returns the last range of the table; infinite without a table.
   [[nodiscard]] double end_m() const;
-  /// Returns the same air with every optical depth multiplied by `factor`. Use it to compute the effect of an error of
-  /// the extinction. Precondition: factor >= 0.
+  /// Returns the same air with every optical depth multiplied by `factor`. Use this function to compute the effect of
+  /// an error of the extinction. Precondition: factor >= 0.
   [[nodiscard]] Transmittance with_depth_times(double factor) const;
 
  private:

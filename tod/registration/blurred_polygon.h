@@ -8,7 +8,7 @@
 
 namespace todbench {
 
-/// Picture of a polygon of contrast 1 in a window, and its derivatives: change of the picture per pixel of shift.
+/// Picture of a polygon of contrast 1 in a window, and derivatives of the picture: change per pixel of shift.
 struct BlurredPolygon {
   cv::Mat1d value, d_shift_x, d_shift_y;
 };

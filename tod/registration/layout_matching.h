@@ -27,7 +27,8 @@ struct LayoutMatch {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;  ///< index of triangle, index of blob
   int missing = 0;                                         ///< number of triangles inside the picture without a blob
   /// Returns whether this match is better: more pairs, or the same number of pairs and fewer missing triangles. The
-  /// number of pairs has priority, because a layout that is shifted half out of the picture has few missing triangles.
+  /// number of pairs has priority, because a layout that is shifted half out of the picture has only a few missing
+  /// triangles.
   [[nodiscard]] bool better_than(const LayoutMatch& other) const {
     if (pairs.size() != other.pairs.size()) return pairs.size() > other.pairs.size();
     return missing < other.missing;

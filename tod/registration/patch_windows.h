@@ -13,8 +13,8 @@
 
 namespace todbench {
 
-/// A square window with an even number of pixels on a side. Its centre is the corner of four pixels that is nearest to
-/// the centroid of the target.
+/// A square window with an even number of pixels on a side. The centre of the window is the corner of four pixels that
+/// is nearest to the centroid of the target.
 struct PatchWindow {
   cv::Rect pixels;
   cv::Point2d phase;  ///< centroid minus window centre, each in [-0.5, 0.5)
@@ -23,12 +23,12 @@ struct PatchWindow {
 /// Returns the window of `side` pixels (even) round a centroid in pixel coordinates (pixel centres at integers).
 [[nodiscard]] PatchWindow patch_window(cv::Point2d centroid_px, int side);
 
-/// A triangle whose window is too close to another triangle.
+/// A triangle whose window is too close to a neighbouring triangle.
 struct TouchingWindow {
   std::string triangle, neighbour;
   int side_px = 0;          ///< side of the window
-  double gap_px = 0;        ///< distance between the window, including the search range, and the neighbour
-  double least_gap_px = 0;  ///< required distance, because of blur
+  double gap_px = 0;        ///< distance between the neighbouring triangle and the window, including the search range
+  double least_gap_px = 0;  ///< distance that is required because of blur
 };
 
 /// A triangle whose window is not entirely in the picture.
@@ -43,13 +43,14 @@ struct WindowOutOfPicture {
 [[nodiscard]] std::string sentence(const WindowOutOfPicture& window);
 
 /// Returns the triangles of a mounted plate whose window touches a neighbour at the expected scale and aspect of
-/// `options`. The window is widened by the search range of the observer and half a pixel. Because of blur, the
-/// neighbour is enlarged by 1.5 px on each side. `sides`: sides of the windows, in the order of the triangles.
+/// `options`. For the test, the window is widened by the search range of the observer plus half a pixel. Because of
+/// blur, the neighbour is enlarged by 1.5 px on each side. `sides`: sides of the windows, in the order of the
+/// triangles.
 [[nodiscard]] std::vector<TouchingWindow> touching_windows(const TargetPlate& plate, const RegistrationOptions& options,
                                                            const std::vector<int>& sides, double search_px);
 
-/// Returns the triangles whose window is partly outside a picture of this size, or would be after a motion of the plate
-/// of up to a pixel.
+/// Returns the triangles whose window is partly outside a picture of this size, or would be outside after a motion of
+/// the plate by up to a pixel.
 [[nodiscard]] std::vector<WindowOutOfPicture> windows_out_of_picture(const TargetPlate& mounted_plate,
                                                                      const Registration& registration,
                                                                      const std::vector<int>& sides, cv::Size picture);

@@ -16,7 +16,7 @@ namespace todbench {
 
 inline constexpr double first_blur_px = 0.45;  ///< initial blur: optics, detector and sampling of a focused camera
 inline constexpr double searched_scale_range = 0.3;  ///< relative; wide enough to report a wrong scale
-/// Smallest number of pairs of a match; fewer blobs agree with any layout by chance.
+/// Smallest number of pairs of a match. Fewer blobs agree with any layout by chance.
 inline constexpr int credible_pairs = 4;
 /// Share of the large triangles that must have the direction stated by the plate.
 inline constexpr double agreement_needed = 0.75;
@@ -54,8 +54,8 @@ struct PlateAttempt {
 [[nodiscard]] std::optional<PlateAttempt> attempt_mounting(const PlateSearch& search, const TargetPlate& plate,
                                                            Mounting relative);
 
-/// Improves mapping, positions and blur one after the other. Then excludes triangles that are displaced by a bad pixel
-/// or dirt, as long as enough triangles remain.
+/// Improves mapping, positions and blur one after the other. Then excludes triangles at wrong positions, for example
+/// because of a bad pixel or dirt, as long as enough triangles remain.
 [[nodiscard]] FittedMapping refine_attempt(const PlateSearch& search, PlateAttempt& at);
 
 /// Returns the positions of the triangles on the plate, in mm.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Simplest mapping that describes the located centroids.
+// Fits the simplest mapping that describes the located centroids.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -16,15 +16,15 @@ struct FittedMapping {
   double residual_px = 0;  ///< rms distance
 };
 
-/// Returns the least-squares similarity (4 parameters). An affine mapping (6 parameters) or a homography (8 parameters)
-/// is used if three conditions are met: the decrease of the sum of squares is significant (F test at 1 %), there are at
-/// least two triangles more than necessary, and the triangles do not lie along one line. With one position, the mapping
-/// is a translation at the expected scale. Similarity and residual are those in a picture with square pixels (y
-/// multiplied by `pixel_aspect`).
+/// Returns the least-squares similarity (4 parameters). Returns an affine mapping (6 parameters) or a homography (8
+/// parameters) instead if three conditions are met: the decrease of the sum of squares is significant (F test at 1 %);
+/// there are at least two triangles more than necessary; the triangles do not lie along one line. With one position,
+/// the mapping is a translation at the expected scale. Similarity and residual are computed in a picture with square
+/// pixels (y multiplied by `pixel_aspect`).
 [[nodiscard]] FittedMapping fit_mapping(std::span<const cv::Point2d> plate_mm, std::span<const cv::Point2d> pixels,
                                         const RegistrationOptions& options);
-/// Converts a mapping to pixels of this aspect into a mapping to square pixels. with_own_pixels() is the inverse
-/// function.
+/// Converts a mapping from millimetres to pixels of this aspect into a mapping to square pixels. with_own_pixels() is
+/// the inverse function.
 [[nodiscard]] cv::Matx33d with_square_pixels(const cv::Matx33d& mapping, double pixel_aspect);
 [[nodiscard]] cv::Matx33d with_own_pixels(const cv::Matx33d& mapping, double pixel_aspect);
 

@@ -19,7 +19,7 @@ struct ShiftFit {
   std::vector<double> amplitudes;        ///< contrast of each polygon, in the unit of the picture
   std::vector<double> amplitude_errors;  ///< standard errors of the amplitudes
   double residual_rms = 0;               ///< unit of the picture
-  /// Share of the variance in the windows, after removal of a plane, that the polygons do not explain.
+  /// Share of the variance in the windows that the polygons do not explain, after removal of a plane.
   double unexplained = 1;
   double joint_significance = 0;  ///< common contrast divided by its standard error; > 0 for warm polygons
 };
@@ -30,8 +30,8 @@ struct ShiftFit {
 /// `reach_px`, or the picture is flat.
 ///
 /// The fit is more precise than the centre of mass. For S = 5 px and contrast / noise = 13, the error is 0.023 px for
-/// the fit and 0.14 px for the centre of mass. The fit is affected only by noise along the edges; in the centre of
-/// mass, the weight of noise increases with the distance from the centre.
+/// the fit and 0.14 px for the centre of mass. Only noise along the edges affects the fit; in a centre of mass, the
+/// weight of noise increases with the distance from the centre.
 [[nodiscard]] std::optional<ShiftFit> fit_shift(const cv::Mat1d& picture, std::span<const Polygon> polygons,
                                                 double blur_px, cv::Point2d start, double reach_px);
 
@@ -44,11 +44,11 @@ struct PlaceFit {
   double residual_rms = 0;                    ///< unit of the picture
 };
 
-/// Computes one Gauss-Newton step from the given positions. The step is a linear function of the picture. It is
+/// Computes one Gauss-Newton step from the given positions. The step is a linear function of the picture. The result is
 /// therefore unbiased and has a known error, even if no single polygon is visible above the noise. A shift above half a
-/// pixel is underestimated. Each standard error is the largest of three estimates: independent pixels, noise common to
-/// rows, noise common to columns (sandwich estimate). Empty if a window is partly outside the picture, or if the
-/// polygons do not determine a shift.
+/// pixel is underestimated. Each standard error is the largest of three estimates: for independent pixels, for noise
+/// common to rows, and for noise common to columns (sandwich estimates). Empty if a window is partly outside the
+/// picture, or if the polygons do not determine a shift.
 [[nodiscard]] std::optional<PlaceFit> fit_place(const cv::Mat1d& picture, std::span<const Polygon> polygons,
                                                 double blur_px, cv::Point2d centre);
 
@@ -56,7 +56,7 @@ struct PlaceFit {
 [[nodiscard]] cv::Rect place_window(const Polygon& polygon);
 
 /// Returns the sum of squared residuals of the polygons at their positions, with contrast and background planes fitted.
-/// It is smallest at the correct blur.
+/// The sum is smallest at the correct blur.
 [[nodiscard]] double misfit(const cv::Mat1d& picture, std::span<const Polygon> polygons, double blur_px);
 
 /// Performs a coarse search. Returns the offset in whole pixels, up to `reach_px` in x and y, at which polygons with

@@ -19,8 +19,8 @@ namespace todbench {
 /// Minimum number of presentations at a contrast before it can be settled.
 inline constexpr int least_adaptive_presentations = 8;
 
-/// Returns the duration of a visit to a set-up, in s. It is the sum of the times for changes of plate, mounting and
-/// contrasts, of the times for shifts, and of 0.1 s for each presentation.
+/// Returns the duration of a visit to a set-up, in s. The duration consists of the times for changes of plate, mounting
+/// and contrasts, the times for shifts, and 0.1 s for each presentation.
 [[nodiscard]] double visit_seconds(const ConstantStimuliOptions& stimuli, bool other_plate, bool other_mounting,
                                    int contrasts);
 
@@ -36,7 +36,7 @@ struct AdaptiveOptions {
   /// function.
   std::map<double, ProportionTable> functions{};
   double half_width_percent = 10;     ///< target for the half-width of the 95 % interval of ln S75, at every contrast
-  bool with_contrast_errors = false;  ///< the interval includes the errors of the measured contrasts
+  bool with_contrast_errors = false;  ///< true: the interval includes the errors of the measured contrasts
                                       ///< (observe_contrasts())
   /// Largest number of presentations over all contrasts. At least one visit is made for each contrast.
   int max_presentations = 1000;
@@ -51,26 +51,26 @@ struct ContrastProgress {
   std::optional<double> half_width_percent;
   bool settled = false;
   /// True if the contrast is not settled and at least three quarters of the variance are due to the measured contrast.
-  /// Presentations in another set-up reduce this variance; presentations in the same set-up do not.
+  /// This variance is reduced by presentations in a different set-up, but not by presentations in the same set-up.
   bool needs_set_up = false;
 };
 
-/// Share of the variance that is due to the measured contrast. Above this share, the measured contrast determines the
-/// width of the interval.
+/// Share of the variance due to the measured contrast, above which the measured contrast determines the width of the
+/// interval.
 inline constexpr double contrast_decides = 0.75;
 
 /// Adaptive choice of set-ups (plate and mounting). A presentation gives answers to all its triangles, and only changes
-/// of the target cost time. The schedule therefore visits the set-up with the largest expected reduction of the entropy
-/// of the thresholds of the open contrasts (PsiPlacement::expected_gain(), summed over triangles) per second of target
-/// changes. Set-ups that were visited before have less weight, so that positions on the plate vary. A visit begins at
-/// the highest contrast, at which the plate is registered. The contrasts that are not settled follow. A contrast is
-/// settled when three conditions are met, also within a visit: at least 40 trials of three sizes in eight
-/// presentations; a two-sided interval with a half-width below the target; and a fit that the data do not contradict
-/// (deviance, p > 0.001). Graded answers have no deviance, and their interval is computed from their own scatter. If
-/// the interval includes the errors of the measured contrasts, and these errors alone exceed the target, the contrast
-/// is settled after two visits of each set-up. The run ends when all contrasts are settled, or at max_presentations.
-/// The shifts of a visit are those of even_phases() over the mountings of its plate. In each further visit to a set-up,
-/// the shifts are between those of earlier visits.
+/// of the target cost time. The schedule therefore visits the set-up with the largest expected reduction of entropy per
+/// second of target changes. The entropy is that of the thresholds of the contrasts that are not settled
+/// (PsiPlacement::expected_gain(), summed over triangles). Set-ups that were visited before have less weight, to vary
+/// the positions on the plate. A visit begins at the highest contrast, at which the plate is registered. The contrasts
+/// that are not settled follow. A contrast is settled when three conditions are met, also during a visit: there are at
+/// least 40 trials of three sizes in eight presentations; the interval is two-sided and its half-width is below the
+/// target; the data do not contradict the fit (deviance, p > 0.001). Graded answers have no deviance, and the interval
+/// is computed from the scatter of the answers. If the interval includes the errors of the measured contrasts, and
+/// these errors alone exceed the target, the contrast is settled after two visits of each set-up. The run ends when all
+/// contrasts are settled, or at max_presentations. The shifts of a visit are those of even_phases() over the mountings
+/// of the plate. On each further visit to a set-up, the shifts are between those of earlier visits.
 class AdaptiveSchedule final : public TrialSchedule {
  public:
   AdaptiveSchedule(AdaptiveOptions options, const RandomStream& stream);
@@ -106,7 +106,8 @@ class AdaptiveSchedule final : public TrialSchedule {
   void judge(Contrast& contrast) const;
   /// Fits the answers at a contrast; empty if the fit fails.
   [[nodiscard]] std::optional<TodPoint> fitted(const Contrast& contrast) const;
-  /// Sets the half-width at a contrast. Returns whether it is below the target, or cannot be reduced to the target.
+  /// Sets the half-width at a contrast. Returns whether the half-width is below the target, or cannot be reduced to the
+  /// target.
   [[nodiscard]] bool narrow_enough(Contrast& contrast) const;
 
   AdaptiveOptions options_;
@@ -115,9 +116,9 @@ class AdaptiveSchedule final : public TrialSchedule {
   std::vector<Contrast> contrasts_;
   std::map<double, ContrastError> contrast_errors_;
   std::size_t current_set_up_ = 0;
-  std::vector<std::size_t> to_visit_;  ///< remaining contrasts of this visit, the present one first
+  std::vector<std::size_t> to_visit_;  ///< remaining contrasts of this visit, the present contrast first
   int shown_here_ = 0;                 ///< presentations of the present contrast in this visit
-  bool registered_ = false;            ///< the visit has shown its first contrast
+  bool registered_ = false;            ///< true: the visit has shown its first contrast
   int shown_ = 0;
 };
 

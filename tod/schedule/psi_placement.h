@@ -13,26 +13,25 @@ namespace todbench {
 /// Options of PsiPlacement.
 struct PsiOptions {
   PsychometricForm form = PsychometricForm::size;
-  /// Lower limit of the prior of the threshold, which is uniform in ln threshold; > 0.
+  /// Lower limit of the prior of the threshold; > 0. The prior is uniform in ln threshold.
   double first_size = 1;
   /// Upper limit of the prior of the threshold.
   double last_size = 10;
   double size_step = 0.05;  ///< step of the candidate sizes, in ln
-  /// Lapse of the model for the selection. With this lapse, a single wrong answer does not exclude the true threshold.
+  /// Lapse of the model for the selection. It prevents a single wrong answer from excluding the true threshold.
   double selection_lapse = 0.01;
-  /// Share of trials at 2.5 times the threshold, where only a lapse causes a wrong answer.
+  /// Share of trials at 2.5 times the threshold. At this size only a lapse causes a wrong answer.
   double lapse_probe_share = 0.05;
   double slope_probe_share = 0.1;  ///< share of trials at 45 % correct, which determine the slope
 };
 
-/// Chooses sizes one after another. It selects the size for which the expected entropy of the marginal posterior of the
-/// threshold, after the answer, is lowest (Kontsevich and Tyler 1999; the slope is a nuisance parameter, Prins 2013).
-/// The logarithm of the posterior is stored on a grid of ln threshold and ln slope. If the spread of the posterior is
-/// below two grid steps, the grid is re-centred and its step is halved. If the posterior reaches an edge, the grid
-/// moves. In both cases the posterior is recomputed from all answers. Use this class only to place trials, and
-/// fit_psychometric() to compute thresholds. For answers placed one by one, use the posterior interval of the fit,
-/// because the coverage of its profile interval is up to 2.6 points below 95 % (docs/method/uncertainty.md). One thread
-/// at a time.
+/// Chooses sizes one at a time. The next size is the size with the lowest expected entropy, after the answer, of the
+/// marginal posterior of the threshold (Kontsevich and Tyler 1999; the slope is a nuisance parameter, Prins 2013). The
+/// logarithm of the posterior is stored on a grid of ln threshold and ln slope. If the spread of the posterior is below
+/// two grid steps, the grid is re-centred and its step is halved. If the posterior reaches an edge, the grid moves. In
+/// both cases the posterior is recomputed from all answers. Use this class only to place trials, and fit_psychometric()
+/// to compute thresholds. If answers were placed one by one, use the posterior interval of the fit, because the
+/// coverage of the profile interval is up to 2.6 points below 95 % (docs/method/uncertainty.md). One thread at a time.
 class PsiPlacement {
  public:
   /// Starts without answers. `stream`: random numbers that select probe trials and break ties.
@@ -46,8 +45,8 @@ class PsiPlacement {
   /// Return mean and standard deviation of the marginal posterior of ln threshold.
   [[nodiscard]] double mean_ln_threshold() const { return mean_; }
   [[nodiscard]] double sd_ln_threshold() const { return sd_; }
-  /// Returns the expected reduction, in nats, of the entropy of the marginal of ln threshold by one answer at `size`;
-  /// >= 0.
+  /// Returns the expected reduction, by one answer at `size`, of the entropy of the marginal posterior of ln threshold,
+  /// in nats; >= 0.
   [[nodiscard]] double expected_gain(double size) const;
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Presentations while the contrast decreases and increases. A curve of many contrasts is measured in one pass of every
-// set-up.
+// Presentations while the contrast decreases and increases. One pass of every set-up measures a curve of many
+// contrasts.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@
 namespace todbench {
 
 /// Time between two shifts in a ramp. With 0.1 s for a motion and 0.04 s of discarded frames, 18 of 25 frames are used.
-/// With shifts every 0.2 s, only 3 of 10 frames would be used.
+/// If shifts followed every 0.2 s, only 3 of 10 frames would be used.
 inline constexpr double ramp_step_s = 0.5;
 
 /// Number of presentations at the settled first contrast before the first ramp. The ramps are compared with these
@@ -25,7 +25,7 @@ inline constexpr std::size_t ramp_hold = 20;
 struct RampOptions {
   /// Plates, mountings and pixel; `delta_t_k` are the contrasts of the points, `phases` is not used.
   ConstantStimuliOptions stimuli;
-  double from_k = 0, to_k = 0;  ///< first and last contrast of a ramp down, with the same sign; `to_k` is nearer to 0
+  double from_k = 0, to_k = 0;  ///< first and last contrast of a ramp down, of the same sign; `to_k` is nearer to 0
   double rate_k_per_s = 0;      ///< rate at `from_k`, > 0; it decreases in proportion to the contrast
 };
 
@@ -35,7 +35,7 @@ struct RampOptions {
 [[nodiscard]] double ramp_relative_rate(const RampOptions& options);
 
 /// Returns `ramp_hold` presentations at `from_k`, followed by one ramp down and one ramp up for every set-up. The
-/// shifts are an additive recurrence with a random start, so they are evenly spread over every part of a ramp. The
+/// shifts are an additive recurrence with a random start, which spreads them evenly over every part of a ramp. The
 /// first presentation of a ramp waits until the contrast is near `from_k`; the other presentations do not wait for a
 /// contrast.
 [[nodiscard]] std::vector<TargetState> ramp_presentations(const RampOptions& options, const RandomStream& stream);
@@ -54,7 +54,7 @@ class RampSchedule final : public TrialSchedule {
   RampOptions options_;
   std::vector<TargetState> states_;
   std::size_t position_ = 0, repeated_ = 0, repeated_here_ = 0;
-  bool repeats_ = false;  ///< true: the next state is the last state with another shift
+  bool repeats_ = false;  ///< true: the next state is the last state with a different shift
 };
 
 }  // namespace todbench
