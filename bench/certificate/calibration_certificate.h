@@ -15,11 +15,11 @@ namespace todbench {
 /// Version of the DCC schema whose element names and order the certificate follows.
 inline constexpr std::string_view certificate_schema_version = "3.2.1";
 
-/// Returns the certificate as XML. It contains administrative data, method, conditions, instruments, the decision with
-/// its rule, and for each contrast the threshold S75 and the acuity with expanded uncertainty and coverage factor. The
-/// session must be measured and complete, with a budget and a threshold at every contrast. The order must state
-/// customer, report number, laboratory, country, issue date and authorising person. Errors: `invalid_input` that lists
-/// the missing entries.
+/// Returns the certificate as XML. The certificate contains administrative data, method, conditions, instruments, and
+/// the decision with its rule. For each contrast it contains the threshold S75 and the acuity with expanded uncertainty
+/// and coverage factor. The session must be measured and complete, with a budget and a threshold at every contrast. The
+/// order must state customer, report number, laboratory, country, issue date and authorising person. Errors:
+/// `invalid_input` that lists the missing entries.
 [[nodiscard]] Result<std::string> calibration_certificate(const Session& session, const OrderPlan& order);
 
 }  // namespace todbench

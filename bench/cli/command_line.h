@@ -41,8 +41,9 @@ struct Completion {
 [[nodiscard]] Completion completion(const CLI::App& app, const std::vector<std::string>& words,
                                     const std::function<std::vector<std::string>()>& cameras);
 
-/// Implements `todbench complete WORDS...`, called by the shell: prints one line for each candidate for the last word,
-/// then ":files" if any file may follow. Not a command of the parser, because it takes arbitrary words.
+/// Implements `todbench complete WORDS...`, which the shell calls. Prints one line for each candidate for the last
+/// word, then ":files" if any file may follow. This is not a command of the parser, because its arguments are arbitrary
+/// words.
 void print_completions(const CLI::App& app, const std::vector<std::string>& words);
 
 /// Adds `todbench manual`, which the help does not list. `app` must outlive the run.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Subcommands of the program. Each adds itself to the parser and sets the action that returns its exit code.
+// Subcommands of the program. Each subcommand adds itself to the parser and sets the action that returns its exit code.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -31,7 +31,7 @@ struct Program {
 void finish_command(CLI::App& command, Program& program, std::function<int(Console&)> action);
 
 /// Validators of option values. Unlike the validators of the parser, they reject NaN and quote the value. If the value
-/// would be valid in another unit, the message names that unit. `unit`: unit of the option as in the suffix of its
+/// would be valid in a different unit, the message names that unit. `unit`: unit of the option as in the suffix of its
 /// name.
 [[nodiscard]] CLI::Validator number_in(double low, double high, std::string_view unit = {});
 [[nodiscard]] CLI::Validator whole_number(std::int64_t low, std::int64_t high);

@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Session and its folder as stated on the command line. References that are valid for the duration of the call.
+/// Session and its folder as stated on the command line. The references are valid during the call.
 struct NamedSession {
   const std::string& folder;
   const Session& session;

@@ -40,8 +40,8 @@ class Console {
   void table(const TableRow& header, const std::vector<TableRow>& rows) const;
   /// Writes a sentence to standard error; no output with --quiet.
   void note(std::string_view sentence);
-  /// Writes a sentence to standard error, also with --quiet, because the following output could be misinterpreted
-  /// without it.
+  /// Writes a sentence to standard error, also with --quiet, because a reader could misinterpret the following output
+  /// without this sentence.
   void warning(std::string_view sentence);
   /// Writes an error to standard error on one line, also with --quiet.
   void error(std::string_view sentence);
@@ -50,8 +50,8 @@ class Console {
   void phase(std::string_view name);
   /// Shows the progress of the phase.
   void progress(std::size_t done, std::size_t planned);
-  /// Call it when the work stops advancing. Excludes the time until the next progress() from the estimate of the
-  /// remaining time.
+  /// Call this function when the work stops advancing. The estimate of the remaining time then excludes the time until
+  /// the next progress().
   void stands_still();
   /// Shows why the run waits: in place of the bar on a terminal, otherwise as an occasional line.
   void waiting(std::string_view sentence);

@@ -34,7 +34,7 @@ struct DecidedEffects {
   std::string promise;
 };
 
-/// Returns the sentence that explains why every effect that is not neutral is simulated: the criteria of the planner
+/// Returns the sentence with the reason why every effect that is not neutral is simulated: the criteria of the planner
 /// are valid for triangles, not for this scene. `scene`: "the threshold of bars", "the identification of targets".
 [[nodiscard]] std::string no_criterion_for(const std::string& scene);
 

@@ -20,7 +20,7 @@ void print_findings(const Console& console, const std::optional<Adequacy>& adequ
 void print_frontier(const Console& console, const std::vector<PrecisionChoice>& choices);
 
 /// Prints a table of the paired ratios (tod/comparison/paired_ratio.h), and a sentence about errors that do not cancel
-/// in them. No output without paired ratios. `measured_once`: has_contrast_measured_once() of a camera.
+/// in these ratios. No output without paired ratios. `measured_once`: has_contrast_measured_once() of a camera.
 void print_paired(const Console& console, const Comparison& comparison, bool measured_once);
 
 }  // namespace todbench

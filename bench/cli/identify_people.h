@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of `todbench identify` with which people replace the observer: writing pictures for people, and evaluating
-// their answers.
+// Options of `todbench identify` for people in place of the observer: writing the pictures, and evaluating the answers.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -7,7 +7,7 @@
 namespace todbench {
 
 /// Calls `main` and returns its result. If the stack limit (`ulimit -s`) is below 1 MiB, `main` runs on a thread with a
-/// stack of 8 MiB, and later threads get stacks of this size. Call it first in main().
+/// stack of 8 MiB. Later threads get stacks of this size. Call it first in main().
 [[nodiscard]] int on_a_large_stack(const std::function<int()>& main);
 
 }  // namespace todbench

@@ -11,8 +11,8 @@ namespace todbench {
 
 struct Program;
 
-/// Parses the command line with the commands of `add_commands`, runs the chosen one and returns the exit code of the
-/// process. Prints errors in one line on standard error.
+/// Parses the command line with the commands of `add_commands`, runs the chosen command and returns the exit code of
+/// the process. Prints errors in one line on standard error.
 [[nodiscard]] int run_program(int argc, char** argv, void (*add_commands)(CLI::App&, Program&));
 
 /// Runs the program with the demonstration as the only command.

@@ -42,15 +42,14 @@ struct RangeOptions {
   CriterionSource criterion_source = CriterionSource::published;
   /// Observer of the TOD curve of the session; empty: no session.
   std::string curve_observer{};
-  /// Phrase for the result that describes the M75 of --m75-of: the observers who identified the targets, the set of
-  /// targets, and the observer of the TOD curve.
+  /// Phrase for the result that describes the M75 of --m75-of. It names the observers who identified the targets, the
+  /// set of targets, and the observer of the TOD curve.
   std::string m75_observer{};
   double n50 = 6,                ///< cycles on the target for 50 % in ACQUIRE
       mtdp_n50 = 6,              ///< cycles on the target for 50 % in the MTDP-like model
-      extinction_u_percent = 0,  ///< relative standard uncertainty of the extinction; it widens the intervals
-      curve_u_percent = 0;       ///< relative standard uncertainty of MRTD, MTDP-like and CTF thresholds; it widens
-                                 ///< intervals
-  /// Relative standard uncertainty of M75 in percent; it widens the interval of the TOD model.
+      extinction_u_percent = 0,  ///< relative standard uncertainty of the extinction; widens the intervals
+      curve_u_percent = 0;  ///< relative standard uncertainty of MRTD, MTDP-like and CTF thresholds; widens intervals
+  /// Relative standard uncertainty of M75 in percent, which widens the interval of the TOD model.
   double m75_u_percent = 0;
   double cn2 = 0,             ///< structure parameter of the turbulence along the path, m^(-2/3); 0: no turbulence
       tolerance_percent = 1;  ///< change of the acuity below which the TOD model skips turbulence

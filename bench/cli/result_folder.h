@@ -12,7 +12,7 @@ namespace todbench {
 enum class ExistingResults { refused, overwritten };
 /// Checks that a folder for results is new, empty, or allowed to be overwritten. Errors: `invalid_input`.
 [[nodiscard]] Result<void> check_result_folder(const std::filesystem::path& folder, ExistingResults existing);
-/// Checks the folder in the same way and creates it.
+/// Makes the same checks and creates the folder.
 [[nodiscard]] Result<void> make_result_folder(const std::filesystem::path& folder, ExistingResults existing);
 
 }  // namespace todbench

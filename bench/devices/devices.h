@@ -62,14 +62,14 @@ struct OpenedBench {
                                              const ExperimentHost& host = {}, const SayProgress& on_progress = {},
                                              const OnTargetWait& on_wait = {});
 
-/// Opens the target of the plan without its camera. Not for a target of kind 'scene', which belongs to its camera.
-/// Errors: those of the instruments and of the display; `interrupted`.
+/// Opens the target of the plan without its camera. Not for a target of kind 'scene', because this target belongs to
+/// its camera. Errors: those of the instruments and of the display; `interrupted`.
 [[nodiscard]] Result<std::unique_ptr<Target>> open_target(const LoadedPlan& loaded, std::stop_token stop,
                                                           const AskOperator& ask_operator = {},
                                                           const OnTargetWait& on_wait = {});
 
-/// Creates a simulated sensor in front of a scene. `shown_delta_t_k`: set contrast -> contrast shown, so that a twin
-/// shows the contrasts that a camera observed; other contrasts are shown as set. `source`: options of
+/// Creates a simulated sensor in front of a scene. `shown_delta_t_k`: set contrast -> contrast shown. A twin can thus
+/// show the contrasts that a camera observed. Contrasts without an entry are shown as set. `source`: options of
 /// simulated_source().
 [[nodiscard]] OpenedBench simulated_bench(std::shared_ptr<const SensorModel> model,
                                           const std::vector<TargetPlate>& plates, double distance_m,

@@ -15,7 +15,7 @@
 
 namespace todbench {
 
-/// Shows levels from 0 to 1 and returns the levels on the screen, same size and scale.
+/// Shows levels from 0 to 1 and returns the levels on the screen, in the same size and scale.
 using ShowLevels = std::function<Result<cv::Mat1f>(const cv::Mat1f& levels)>;
 
 /// Transfer curve of a monitor: light as a function of level, both from 0 (black) to 1 (white).

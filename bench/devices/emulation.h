@@ -44,8 +44,8 @@ struct EmulationArguments {
   /// over the pixels (K/min), and their time constant (s; 0: linear drift).
   double drift_k_per_min = 0, drift_pattern_k_per_min = 0, drift_time_constant_s = 0;
   bool trigger = true;  ///< the stage reports the start of a run in the camera's clock
-  /// Picture in .npy format, levels from 0 to 1, shown by a monitor in front of the camera. Read again after each
-  /// change of the file; black if the file does not exist. Empty: the plates are in front of the camera.
+  /// Picture in .npy format, levels from 0 to 1, shown by a monitor in front of the camera. The file is read again
+  /// after each change. If the file does not exist, the monitor is black. Empty: the plates are in front of the camera.
   std::string monitor_file{};
   double monitor_pixel_mm = 0.25, monitor_span_k = 20, monitor_gamma = 1;  ///< see Monitor
   std::uint64_t seed = 1;
@@ -68,9 +68,9 @@ enum class DemonstrationLength {
 /// Returns the options of start_laboratory(). Errors: those of sensor and plates.
 [[nodiscard]] Result<LaboratoryOptions> laboratory_options(const EmulationArguments& arguments);
 
-/// Starts camera, black body and plate stage. They settle faster than a real bench. The black body has a time constant
-/// of 4 ms and is stable after 10 ms. A change of plate or mounting takes 50 ms. The stage moves at 1 m/s and comes to
-/// rest in 5 ms. A shift of some millimetres takes less than a frame of 20 ms.
+/// Starts camera, black body and plate stage. These devices settle faster than those of a real bench. The black body
+/// has a time constant of 4 ms and is stable after 10 ms. A change of plate or mounting takes 50 ms. The stage moves at
+/// 1 m/s and comes to rest in 5 ms. A shift of some millimetres takes less than a frame of 20 ms.
 [[nodiscard]] Result<std::unique_ptr<Laboratory>> start_laboratory(const EmulationArguments& arguments);
 
 /// Returns the plan with the camera and instruments of a laboratory.

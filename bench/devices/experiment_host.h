@@ -20,8 +20,8 @@ namespace todbench {
 
 struct OpenedBench;
 
-/// Stages of an enhancement package, after the modules of the plan. They process the frames of the camera and of its
-/// twin.
+/// Stages of an enhancement package, after the modules of the plan. The stages process the frames of the camera and of
+/// its twin.
 struct AddedStages {
   /// Creates the stages and passes on lines of their standard error. Empty: no stages.
   std::function<std::vector<std::unique_ptr<ChainStage>>(const std::function<void(std::string_view line)>&)> make{};
@@ -41,7 +41,7 @@ struct CameraPatience {
 
 /// Controls of a run beyond its plan. An ExperimentListener only receives progress.
 struct ExperimentHost {
-  /// Lets a run pause between two presentations; null: it never pauses. Must outlive the run.
+  /// Lets a run pause between two presentations; null: the run never pauses. Must outlive the run.
   const Pause* pause = nullptr;
   /// Passes requests of a target of kind prompt to the operator; empty: at the terminal.
   AskOperator ask_operator{};

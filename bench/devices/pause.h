@@ -8,7 +8,7 @@
 
 namespace todbench {
 
-/// Pause switch: one thread sets it, and another waits while it is set. Thread-safe.
+/// Pause switch: one thread sets the switch, and a second thread waits while it is set. Thread-safe.
 class Pause {
  public:
   /// Requests a pause.

@@ -21,8 +21,8 @@ struct ReconnectionOptions {
   std::map<std::string, std::string> settings{};  ///< settings of the plan, which are written first
 };
 
-/// Reopens the camera. Called on a thread that may outlive an aborted source: the function must own all objects that it
-/// uses.
+/// Reopens the camera. Called on a thread that may outlive an aborted source. The function must therefore own all
+/// objects that it uses.
 using ReopenCamera = std::function<Result<std::unique_ptr<FrameSource>>()>;
 
 /// Source that forwards all calls to the present connection, for every back end. Sequence numbers continue across
@@ -42,7 +42,7 @@ class ReconnectingSource final : public FrameSource {
   /// Reconnects after `disconnected`, through the states from releasing to registering. Returns when the camera with
   /// the same serial number streams again with the same settings. Errors: `disconnected` (not back in time, or
   /// settings, geometry or scale differ; the message states which), `interrupted` within 0.1 s of a stop request in
-  /// every state. A connection attempt under way then ends on its own thread.
+  /// every state. A connection attempt that is in progress then ends on its own thread.
   [[nodiscard]] Result<void> recover(std::stop_token stop);
   /// Confirms that the plate is at its former position. This is the last step of a reconnection.
   void confirm_registration();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// States and transitions between the loss of a camera and the continued measurement. A pure function, which
-// reconnecting_source.h executes.
+// States and transitions between the loss of a camera and the continued measurement. The transitions are a pure
+// function; reconnecting_source.h executes them.
 #pragma once
 
 #include <array>
@@ -27,7 +27,7 @@ enum class LinkEvent {
   done,         ///< the task of the state succeeded
   lost,         ///< no frames and no response
   failed,       ///< the attempt failed; the next attempt may succeed
-  refused,      ///< the camera is there but differs from before
+  refused,      ///< the camera responds but differs from its former state
   out_of_time,  ///< away longer than the patience
   abort,        ///< stopped on request
 };
@@ -57,8 +57,8 @@ inline constexpr std::array all_link_events{LinkEvent::done,    LinkEvent::lost,
   return state == LinkState::gave_up || state == LinkState::aborted;
 }
 
-/// Returns the wait before attempt `attempt`, counted from 0: 0.1 s, doubled each time, at most 3 s. After a heartbeat
-/// of 3 s a camera releases a client that has vanished.
+/// Returns the wait before attempt `attempt`, counted from 0: 0.1 s, doubled each time, at most 3 s. A camera releases
+/// a vanished client after a heartbeat timeout of 3 s.
 [[nodiscard]] std::chrono::milliseconds back_off(int attempt);
 
 }  // namespace todbench

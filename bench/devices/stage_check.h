@@ -23,8 +23,8 @@ struct StageMovement {
 inline constexpr double most_stage_deviation = 0.1;
 
 /// Opens camera and target of the plan and presents the first plate at the highest contrast in the centre. Then moves
-/// the stage by one pixel to either side, first along x and then along y. Errors: `invalid_input` (no stage that sets
-/// positions), `calibration` (the pictures do not show the plate), those of open_bench() and measure().
+/// the stage by one pixel to either side of the centre, first along x and then along y. Errors: `invalid_input` (no
+/// stage that sets positions), `calibration` (the pictures do not show the plate), those of open_bench() and measure().
 [[nodiscard]] Result<StageMovement> check_stage_movement(const LoadedPlan& loaded, const SayProgress& on_progress,
                                                          std::stop_token stop);
 

@@ -6,8 +6,8 @@
 
 namespace todbench {
 
-/// Returns a function that writes requests to standard error and reads answers from standard input. It is the default
-/// of a run without another host.
+/// Returns a function that writes requests to standard error and reads answers from standard input. Runs use this
+/// function by default.
 [[nodiscard]] AskOperator ask_at_terminal();
 
 }  // namespace todbench

@@ -14,13 +14,13 @@
 
 namespace todbench {
 
-/// Levels of the frames of the last `window_s`, and the drift through them.
+/// Levels of the frames of the last `window_s`, and the drift computed from these levels.
 class DriftWindow {
  public:
   explicit DriftWindow(double window_s) : window_s_(window_s) {}
   /// Adds the level of a frame.
   void add(double time_s, double level_k);
-  /// Discards all levels. Call it after a correction, because the level of earlier frames does not continue.
+  /// Discards all levels. Call it after a correction, because levels before and after a correction are not comparable.
   void clear() { points_.clear(); }
   /// Returns the slope with its 95 % interval in K/min, by least squares; empty before the window is full, or with
   /// fewer than ten frames.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Decisions of a person between the windows of bars stored in a session: shown in the window of the program, or as
-// pictures in a folder.
+// Decisions of a person between the windows of bars stored in a session. The windows are shown in the window of the
+// program, or as pictures in a folder.
 #pragma once
 
 #include <cstdint>
@@ -41,8 +41,8 @@ struct BarsQuestion {
 [[nodiscard]] Result<std::vector<BarsQuestion>> bars_questions(const KeptBars& kept, const BarsRequest& request);
 /// Returns both windows side by side, separated by a strip of background: 8-bit grey, enlarged by bicubic
 /// interpolation. The range of the grey scale is three times the contrast, or six times the root mean square of the
-/// samples of both windows if that is larger. The grey scale is the same whether the target is on the left or on the
-/// right.
+/// samples of both windows if this value is larger. The grey scale is the same whether the target is on the left or on
+/// the right.
 [[nodiscard]] cv::Mat1b bars_picture(const KeptBars& kept, const BarsQuestion& question, int magnification);
 /// Returns the answer to a decision in the form of the record.
 [[nodiscard]] BarsAnswer bars_answer(const KeptBars& kept, const BarsQuestion& question, bool answered_left);

@@ -27,7 +27,7 @@ struct BlindSource {
   std::vector<JudgedTrial> trials;
 };
 
-/// Patch as shown to the person. The program does not reveal its source before the last answer.
+/// Patch as shown to the person. The program does not reveal the source of the patch before the last answer.
 struct BlindPatch {
   std::size_t source = 0;
   JudgedTrial judged;  ///< patch, cut to the field that all sources have in common

@@ -32,7 +32,7 @@ struct JudgedPoint {
 /// Returns gain and noise at a contrast; empty without stages after the camera.
 [[nodiscard]] std::optional<JudgedPoint> judged_point(const PackageResult& result, double set_delta_t_k);
 /// Returns a sentence if the gains at two contrasts differ by more than 5 % and more than four standard errors. The
-/// stages are then not linear, so that large and small triangles have different gains. Empty: no difference.
+/// stages are then not linear: large and small triangles have different gains. Empty: no difference.
 [[nodiscard]] std::string why_not_linear(const PackageResult& result);
 
 }  // namespace todbench

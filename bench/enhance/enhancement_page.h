@@ -16,8 +16,8 @@ namespace todbench {
 [[nodiscard]] Document enhancement_page(const LoadedPlan& loaded, const std::vector<EnhancementPackage>& packages,
                                         const Enhancement& enhancement);
 
-/// Returns the pictures from left to right in the order of the results, separated by eight white columns. Each is
-/// scaled to 8 bits between its 0.1 % and 99.9 % quantiles. Empty if there is no picture.
+/// Returns the pictures from left to right in the order of the results, separated by eight white columns. Each picture
+/// is scaled to 8 bits between its 0.1 % and 99.9 % quantiles. Empty if there is no picture.
 [[nodiscard]] cv::Mat1b side_by_side(const Enhancement& enhancement);
 
 }  // namespace todbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Second judgement of the recorded frames of a session, by another observer or through an enhancement package.
+// Second judgement of the recorded frames of a session, by a different observer or through an enhancement package.
 #pragma once
 
 #include <filesystem>

@@ -17,7 +17,7 @@
 
 namespace todbench {
 
-/// Stage with its parameters. Each parameter belongs to the kind in its comment.
+/// Stage with its parameters. The comment of a parameter states the kind of stage to which it belongs.
 struct StagePlan {
   enum class Kind {
     recursive,
@@ -46,7 +46,7 @@ struct EnhancementPackage {
   std::string name, description;
   std::vector<StagePlan> stages;
   std::string text, sha256;             ///< content of the file and its SHA-256
-  std::vector<std::string> provenance;  ///< origin of its modules: command, version, hashes of the files that they name
+  std::vector<std::string> provenance;  ///< origin of the modules: command, version, hashes of the files that they name
 };
 
 /// Reads name, description, and [[stage]] with kind and its numbers; kind "module" has command, version, parameters,
@@ -54,8 +54,8 @@ struct EnhancementPackage {
 /// Errors: `invalid_input` "FILE:LINE: ...".
 [[nodiscard]] Result<EnhancementPackage> read_package(const std::filesystem::path& file);
 
-/// Fails with `invalid_input` for a package with super-resolution. `what`: user of the package, which requires pictures
-/// with one sample per pixel of the camera.
+/// Fails with `invalid_input` for a package with super-resolution. `what`: user of the package. This user requires
+/// pictures with one sample per pixel of the camera.
 [[nodiscard]] Result<void> refuse_finer_pictures(const EnhancementPackage& package, std::string_view what);
 
 /// Returns the largest distance, in samples, over which a picture influences a sample after the stages; empty if the

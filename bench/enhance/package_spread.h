@@ -25,14 +25,15 @@ struct EndTrials {
   std::optional<Error> failure;              ///< error of an observer; the trials are then incomplete
 };
 
-/// Observers at both limits of the open parameters. They judge the patches of a run after the observer itself, so that
-/// frames, modules and packages are computed once. One object serves all packages, so that they share the templates.
+/// Observers at both limits of the open parameters. These observers judge the patches of a run after the observer of
+/// the run. Frames, modules and packages are therefore computed only once. All packages use one object and therefore
+/// share the templates.
 class OpenEnds {
  public:
   /// Creates no observers if `observer` has no eye.
   explicit OpenEnds(const TemplateObserverSpec& observer);
-  /// Lets both observers judge the patch of a trial and appends their answers to `into`. Both use the same random
-  /// numbers as the observer itself. `options`: options of the run.
+  /// Lets both observers judge the patch of a trial and appends their answers to `into`. Both observers use the same
+  /// random numbers as the observer of the run. `options`: options of the run.
   void judge(const Trial& trial, const Patch& patch, const MeasurementOptions& options, EndTrials& into);
 
  private:

@@ -45,16 +45,17 @@ struct ControlChart {
   [[nodiscard]] bool signalled() const { return !points.empty() && points.back().signal; }
 };
 
-/// Returns the chart of values in the order of time. The reference is the weighted mean of the first values. Its
-/// standard error widens the limits of the EWMA; if this error is 0, these are the usual limits. The scatter is the
-/// square root of half the mean square of successive differences minus the mean u^2 (von Neumann 1941), at least 0.
-/// Empty if there is no value after the reference, or if a value has neither uncertainty nor scatter.
+/// Returns the chart of values in the order of time. The reference is the weighted mean of the first values. The
+/// standard error of the reference widens the limits of the EWMA. If this error is 0, the limits are the usual limits.
+/// The scatter is the square root of half the mean square of successive differences minus the mean u^2 (von Neumann
+/// 1941), at least 0. Empty if there is no value after the reference, or if a value has neither uncertainty nor
+/// scatter.
 [[nodiscard]] std::optional<ControlChart> control_chart(const std::vector<ChartValue>& values,
                                                         const ChartDesign& design);
 
-/// Return the average run length: the mean number of checks until a chart with constant limits signals, starting from
-/// its neutral state, for a shift in standard deviations. Solve the integral equation (EWMA: Crowder 1987; CUSUM: Page
-/// 1954) by Gaussian quadrature with an error of 1e-8.
+/// Return the average run length for a shift in standard deviations. This is the mean number of checks until a chart
+/// with constant limits signals, starting from its neutral state. Solve the integral equation (EWMA: Crowder 1987;
+/// CUSUM: Page 1954) by Gaussian quadrature with an error of 1e-8.
 [[nodiscard]] double ewma_run_length(double lambda, double limit, double shift);
 [[nodiscard]] double cusum_run_length(double k, double h, double shift);
 
@@ -75,8 +76,8 @@ struct LimitCrossing {
 };
 
 /// Fits the weighted line x = a + b t with weights 1 / (u^2 + scatter^2). The 95 % interval of the crossing (Fieller
-/// 1954) contains all t with (a + b t - limit)^2 <= z^2 (1 / W + (t - tm)^2 var b). Only times after the last value
-/// count. The function does not report that the last value is already beyond the limit. Empty for fewer than three
+/// 1954) contains all t with (a + b t - limit)^2 <= z^2 (1 / W + (t - tm)^2 var b). Only times after the last value are
+/// included. The function does not report that the last value is already beyond the limit. Empty for fewer than three
 /// values or a single time.
 [[nodiscard]] std::optional<LimitCrossing> crossing(const std::vector<ChartValue>& values, double scatter,
                                                     double limit);

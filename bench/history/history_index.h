@@ -25,8 +25,8 @@ struct HistoryEvent {
 enum class Adding {
   added,
   known,         ///< same manifest in the same folder, or a copy of a session that still exists
-  moved,         ///< same manifest in another folder; the session no longer exists in the old folder
-  judged_again,  ///< not added, because its frames come from another session
+  moved,         ///< same manifest in a different folder; the session no longer exists in the old folder
+  judged_again,  ///< not added, because its frames come from an earlier session
 };
 
 /// Index of sessions. Session folders do not contain events. The file FILE.events.csv next to the index therefore also
@@ -44,7 +44,7 @@ class HistoryIndex {
   ~HistoryIndex();
 
   /// Adds the session with the conditions of stated_condition(). If the session resumed an interrupted session, its
-  /// values replace the values of that session, because it contains the same frames.
+  /// values replace the values of the interrupted session, because both contain the same frames.
   [[nodiscard]] Result<Adding> add(const HistorySession& session);
   /// Adds an event to the index and to its file of events.
   [[nodiscard]] Result<void> add_event(const HistoryEvent& event);

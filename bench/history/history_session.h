@@ -33,9 +33,9 @@ struct HistorySession {
   std::string path, manifest_sha256, started_utc, program, state, firmware;
   std::vector<HistoryValue> values;
   std::string observer{};  ///< observer of the curve; empty: not known
-  /// True if the frames come from another session, so that this session is not another check of the unit.
+  /// True if the frames come from an earlier session. This session is then not a new check of the unit.
   bool judged_again = false;
-  /// Digest of the manifest of the interrupted session whose frames this session contains too.
+  /// Digest of the manifest of the interrupted session whose frames are also in this session.
   std::string resumes_sha256{};
 };
 

@@ -34,8 +34,8 @@ struct ExpandedRatio {
   Interval ci95, ci90;
 };
 
-/// Uncertainty at one contrast. Each u is the standard uncertainty of ln acuity, which equals the standard uncertainty
-/// of ln S75.
+/// Uncertainty at one contrast. Each u is the standard uncertainty of ln acuity. It equals the standard uncertainty of
+/// ln S75.
 struct PointUncertainty {
   double set_delta_t_k = 0;
   double contrast_slope = 1;  ///< d ln acuity / d ln contrast
@@ -69,8 +69,8 @@ struct CurveUncertainty {
 [[nodiscard]] const PointUncertainty* point_at(const CurveUncertainty& uncertainty, double set_delta_t_k);
 
 /// Returns the interval of S75 in mrad that the decision uses. For a point with a lapse warning, this is the interval
-/// that contains the intervals of both fits. Empty if the slope is at its lower bound, so that the threshold is
-/// meaningless, or if the likelihood has a ridge instead of a maximum.
+/// that contains the intervals of both fits. Empty if the slope is at its lower bound (the threshold is then
+/// meaningless), or if the likelihood has a ridge instead of a maximum.
 [[nodiscard]] Interval deciding_interval(const TodPoint& point);
 
 /// Returns the expanded intervals; empty if the plan has no budget. `plan.seed` seeds the Monte Carlo check.

@@ -40,11 +40,11 @@ struct SpreadInterval {
 /// Returns the interval of the standard deviation of a prior.
 [[nodiscard]] SpreadInterval spread_interval(const FleetPrior& prior);
 
-/// Risks of a measured unit. Its value and u are on the scale of the prior. The measurement error divided by u is
-/// normal or follows Student's t. The true value is drawn from the fleet. The mean of the fleet has the standard
-/// uncertainty sqrt((sd^2 + u^2) / units), and the variances add. `p_conformity`: share of the posterior inside the
-/// tolerance (JCGM 106:2012, 7.2). The other members are as in GlobalRisks (JCGM 106:2012, 9). `..._most`: the largest
-/// of the values at the estimated standard deviation and at both limits of its interval.
+/// Risks of a measured unit. The value and u of the unit are on the scale of the prior. The measurement error divided
+/// by u is normal or follows Student's t. The true value is drawn from the fleet. The mean of the fleet has the
+/// standard uncertainty sqrt((sd^2 + u^2) / units), and the variances add. `p_conformity`: share of the posterior
+/// inside the tolerance (JCGM 106:2012, 7.2). The other members are as in GlobalRisks (JCGM 106:2012, 9). `..._most`:
+/// the largest of the values at the estimated standard deviation and at both limits of its interval.
 struct FleetRisks {
   double p_conformity = 0;
   double consumer_risk = 0, producer_risk = 0;

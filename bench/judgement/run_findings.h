@@ -27,9 +27,9 @@ inline constexpr double assumed_relative_u = 0.03;
 inline constexpr double contrast_false_alarm = 0.005;
 
 /// Returns the largest relative deviation of the effective contrast from the set contrast that is allowed:
-/// max_contrast_deviation_percent of the plan. If the plan does not state it, the allowed deviation is Student's t
-/// times the combined standard uncertainty of the contrast rows of the budget, the estimate, and the effective contrast
-/// itself. `contrasts`: number of tested contrasts.
+/// max_contrast_deviation_percent of the plan. If the plan does not state this value, the allowed deviation is
+/// Student's t times the combined standard uncertainty of the contrast rows of the budget, the estimate, and the
+/// effective contrast itself. `contrasts`: number of tested contrasts.
 [[nodiscard]] double allowed_contrast_deviation(const Plan& plan, const TodPoint& point, std::size_t contrasts);
 
 /// Relative deviation of the contrast above which the run ends, because all its results would be meaningless.

@@ -106,7 +106,7 @@ struct Demand {
   [[nodiscard]] std::optional<double> producer_risk() const;
 };
 
-/// Content of verdict.json. Made once by judge(); other code only presents it.
+/// Content of verdict.json. judge() makes the verdict once; other code only presents it.
 struct Verdict {
   VerdictKind decision = VerdictKind::inconclusive;
   std::string reason{};  ///< reason for the decision, a sentence
@@ -143,9 +143,9 @@ struct JudgementInput {
   std::optional<std::vector<MeasuredQuantity>> measures{};
 };
 
-/// Judges all demands. The verdict is fail if one demand fails; inconclusive if one demand is inconclusive, if there
-/// are no results, or if the run ended early, because missing data could change the verdict; otherwise pass. No other
-/// code makes this decision.
+/// Judges all demands. The verdict is fail if one demand fails. Otherwise it is inconclusive if one demand is
+/// inconclusive, if there are no results, or if the run ended early, because missing data could change the verdict. In
+/// all other cases it is pass. No other code makes this decision.
 [[nodiscard]] Verdict judge(const JudgementInput& evidence);
 
 /// Returns whether the plan has limits. Without limits a verdict states only whether every threshold was found.
@@ -153,8 +153,8 @@ struct JudgementInput {
 /// Returns the decision as a word; "not judged" in place of "pass" if the plan has no limits.
 [[nodiscard]] std::string_view decision_word(const Verdict& verdict);
 
-/// Returns whether a fit identifies the threshold: it has a value and both limits of its interval, the slope is not at
-/// its lower bound, and the likelihood has no ridge (fewer sizes than parameters).
+/// Returns whether a fit identifies the threshold. This requires a value with both limits of its interval, a slope that
+/// is not at its lower bound, and a likelihood without a ridge (fewer sizes than parameters).
 [[nodiscard]] bool threshold_identified(const PsychometricFit& fit);
 
 /// Returns the threshold of a fit that identifies it.

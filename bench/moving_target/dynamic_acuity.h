@@ -21,8 +21,8 @@ struct DynamicPoint {
   /// target at rest. Empty: a threshold is missing.
   std::optional<double> ratio;
   Interval ratio_ci95;
-  /// S75 and ratio over the open parameters of an observer with an eye (open_parameters.h); empty without an eye, or if
-  /// there is no value for the observer or at one of these limits. Not confidence intervals.
+  /// S75 and ratio over the open parameters of an observer with an eye (open_parameters.h). Empty without an eye, or if
+  /// there is no value for the observer or at a limit of its open parameters. Not confidence intervals.
   std::optional<std::pair<double, double>> s75_spread_mrad{}, ratio_spread{};
 };
 /// Results at one speed.
@@ -53,8 +53,8 @@ struct DynamicAcuities {
 };
 
 /// Computes the acuities with dynamic_trials(). Adds the speed 0 in front if it is missing. If `options` state no
-/// sizes, uses eleven sizes from 0.5 to 2.5 times the threshold of the target at rest, which is computed by a direct
-/// estimate. For an observer with an eye, also computes the observers at both limits of its open parameters, each with
+/// sizes, uses eleven sizes from 0.5 to 2.5 times the threshold of the target at rest. A direct estimate computes this
+/// threshold. For an observer with an eye, also computes the observers at both limits of its open parameters, each with
 /// its own sizes.
 [[nodiscard]] Result<DynamicAcuities> dynamic_acuity(const SensorSpec& sensor, TemplateObserver& observer,
                                                      DynamicTrialOptions options);

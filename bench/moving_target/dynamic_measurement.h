@@ -26,7 +26,7 @@ struct DynamicContrast {
 struct MeasuredTimeConstant {
   double time_constant_ms = 0;
   Interval ci95_ms;
-  double exposure_ms = 0;  ///< exposure of the sensor of the plan; half of it is subtracted from the lag
+  double exposure_ms = 0;  ///< exposure of the sensor of the plan; half of the exposure is subtracted from the lag
   double offset_px = 0;    ///< error of the registration at rest, which passes in both directions eliminate
   int passes = 0;
 };
@@ -48,7 +48,7 @@ struct DynamicMeasurement {
 struct DynamicListener {
   MovingListener moving{};
   std::function<Result<void>(const OpenedBench&)> on_open{};  ///< called before the first measurement
-  /// Receives all passes; after an early end, the passes before it.
+  /// Receives all passes; after an early end, the passes made before the end.
   std::function<Result<void>(const MovingMeasurement&)> on_measured{};
 };
 

@@ -14,7 +14,7 @@ namespace todbench {
 /// Result of a measurement, and the outcome of its session.
 struct DynamicSession {
   DynamicMeasurement found;
-  /// Outcome for the plate at rest, from the first frames of its passes. The limits of the plan apply to it.
+  /// Outcome for the plate at rest, from the first frames of its passes. The limits of the plan apply to this outcome.
   ExperimentOutcome outcome;
 };
 

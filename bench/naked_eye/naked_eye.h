@@ -27,9 +27,9 @@ struct NakedEyeTask {
 /// Checks a task. Errors: `invalid_input` (no eye, no display, a contrast or noise that the display cannot show).
 [[nodiscard]] Result<void> validate(const NakedEyeTask& task);
 
-/// Returns a display whose luminance is proportional to the level and on which 1 K is a luminance contrast of 1. It
-/// describes the picture that the person sees, because pictures are drawn with the measured luminances of the levels.
-/// Precondition: validate() of the display succeeds.
+/// Returns a display whose luminance is proportional to the level and on which 1 K is a luminance contrast of 1. The
+/// display describes the picture that the person sees, because pictures are drawn with the measured luminances of the
+/// levels. Precondition: validate() of the display succeeds.
 [[nodiscard]] ViewedDisplay linear_display(const ViewedDisplay& display);
 
 /// Returns the model that looks at this display. Precondition: validate() of the task succeeds.
@@ -59,9 +59,9 @@ struct NakedEyePicture {
 };
 
 /// Draws a square picture of `window_samples` on a side. The luminance of a sample follows from the share of its area
-/// that the triangle covers. It is rounded up or down at random to one of 256 levels. The mean level then represents
-/// the luminance, so that contrasts far below one level can be shown. Noise and rounding follow from the seed of the
-/// task and the number of the trial.
+/// that the triangle covers. The luminance is rounded up or down at random to one of 256 levels. The mean level then
+/// represents the luminance, so that contrasts far below one level can be shown. Noise and rounding follow from the
+/// seed of the task and the number of the trial.
 [[nodiscard]] NakedEyePicture naked_eye_picture(const NakedEyeTask& task, const NakedEyeTrial& trial,
                                                 int window_samples);
 

@@ -44,7 +44,7 @@ void prediction_fields(JsonFields& json, NakedEyePrediction& prediction);
 
 /// Predicts thresholds and shares from graded answers to `pictures` pictures of each size, and chooses the sizes around
 /// the threshold. Deterministic for the seed of the task. Errors: validate(); `not_identifiable` (a contrast without a
-/// threshold between 0.7 and 60 samples: another zoom or distance is needed); `interrupted`.
+/// threshold between 0.7 and 60 samples: a different zoom or distance is needed); `interrupted`.
 [[nodiscard]] Result<NakedEyePrediction> predict_naked_eye(const NakedEyeTask& task, int pictures,
                                                            const std::stop_token& stop);
 

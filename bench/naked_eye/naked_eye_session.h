@@ -39,8 +39,8 @@ class NakedEyeSession {
   [[nodiscard]] const NakedEyePicture& picture() const { return picture_; }
   /// Records the answer to picture(). `response_s`: time from display to answer.
   void answer(Apex answer, double response_s, std::optional<int> limit_ms);
-  /// Writes the answers, the facts about the person, and the comparison. Call it once. Errors: `invalid_input` (no
-  /// answers), `io`.
+  /// Writes the answers, the facts about the person, and the comparison. Call this function once. Errors:
+  /// `invalid_input` (no answers), `io`.
   [[nodiscard]] Result<void> finish(const PersonFacts& person);
   /// Returns the record. Precondition: finish() was called.
   [[nodiscard]] const HumanRecord& record() const { return *record_; }

@@ -106,8 +106,8 @@ struct PeopleFit {
 
 /// Returns the difference between a fitted value and the value of `from`, in units of the spread of hvs-2. The spread
 /// is half of the range of the parameter that is consistent with public data (gain +-4 dB, contrast noise 0 to 0.07,
-/// sensor-noise factor 1.1 to 3.2); for decibels and factors it is taken in logarithms. Empty for other parameters, and
-/// for an observer without an eye.
+/// sensor-noise factor 1.1 to 3.2). For decibels and factors the range is taken in logarithms. Empty for other
+/// parameters, and for an observer without an eye.
 [[nodiscard]] std::optional<double> spreads_from_default(const PeopleFit& fit, std::size_t key);
 
 /// Returns the fitted observer.

@@ -40,7 +40,7 @@ struct Atmosphere {
 /// or range_m, and transmittance or tau; or wavelength_um and extinction_per_km. Any other file extension is read as
 /// tape7 of MODTRAN. The shipped table supplies its band that is nearest to the camera's band, if both limits of the
 /// bands agree within 0.6 um. Errors: `invalid_input` with the file and, if known, the line; also if the request states
-/// an extinction for air that has its own.
+/// an extinction for air that already defines one.
 [[nodiscard]] Result<Atmosphere> load_atmosphere(std::string_view reference, const AtmosphereRequest& request);
 
 /// Parses the text of a file; the name of the file selects the format. Errors: as load_atmosphere().

@@ -22,8 +22,8 @@ inline constexpr std::array budget_distributions{BudgetDistribution::normal, Bud
 /// Returns the name in plans, for example "u-shaped".
 [[nodiscard]] std::string_view to_string(BudgetDistribution distribution);
 
-/// Results to which a row contributes the same error, so that the row cancels: in a ratio to the twin, in a trend over
-/// a series, or between contrasts.
+/// Results to which a row contributes the same error. The row then cancels in a ratio to the twin, in a trend over a
+/// series, or between contrasts.
 enum class BudgetCommon { twin, series, contrasts };
 inline constexpr std::array budget_commons{BudgetCommon::twin, BudgetCommon::series, BudgetCommon::contrasts};
 /// Returns the name of the enumerator.
@@ -109,7 +109,7 @@ enum class InputKind {
 };
 /// Returns the effect of an input on the acuity.
 [[nodiscard]] InputKind kind_of(BudgetInput input);
-/// Value of 1 in a unit after conversion: in metres (geometry), in kelvin (contrast), or relative.
+/// Value of one unit in metres (geometry), in kelvin (contrast), or as a relative number.
 struct BudgetUnit {
   double factor = 1;
   bool relative = true;

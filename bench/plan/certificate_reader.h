@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reader of digital calibration certificates of instruments (DCC, XML with D-SI units): serial number, certificate
-// number, and quantities with expanded uncertainty. A subset; see docs/reference/certificate.md.
+// number, and quantities with expanded uncertainty. Supports a subset of the format; see docs/reference/certificate.md.
 #pragma once
 
 #include <filesystem>
@@ -31,12 +31,12 @@ struct InstrumentCertificate {
   std::vector<CertifiedValue> values;
 };
 
-/// Parses a certificate. Errors: `invalid_input` (parse_xml(); another document; no number; a quantity with an
-/// uncertainty that is negative or not a number).
+/// Parses a certificate. Errors: `invalid_input` (parse_xml(); a different kind of document; no number; a quantity with
+/// an uncertainty that is negative or not a number).
 [[nodiscard]] Result<InstrumentCertificate> parse_certificate(std::string_view xml);
 
-/// Returns the budget row of a black body: the largest standard uncertainty of the temperatures with the name
-/// `quantity` (empty: of all temperatures), stated as expanded uncertainty with its coverage factor. Errors:
+/// Returns the budget row of a black body. Its value is the largest standard uncertainty of the temperatures with the
+/// name `quantity` (empty: of all temperatures), stated as expanded uncertainty with its coverage factor. Errors:
 /// `invalid_input` (no such temperature has an expanded uncertainty; the certificate contains angles and therefore
 /// belongs to a camera).
 [[nodiscard]] Result<BudgetRow> black_body_row(const InstrumentCertificate& certificate, const std::string& quantity,

@@ -11,9 +11,9 @@ namespace todbench {
 /// without a table, the stated transmission. A loaded plan contains this value in `transmission`.
 [[nodiscard]] double mean_transmission(const CollimatorPlan& collimator, const SpectralBand& band);
 
-/// Returns the temperature (K) that a camera with a correct scale reports for a black body behind the collimator: the
-/// temperature whose band radiance is transmission L(black body) + (1 - transmission) L(mirrors). Without a collimator,
-/// returns `black_body_k`.
+/// Returns the temperature (K) that a camera with a correct scale reports for a black body behind the collimator. This
+/// is the temperature whose band radiance is transmission L(black body) + (1 - transmission) L(mirrors). Without a
+/// collimator, returns `black_body_k`.
 [[nodiscard]] double seen_through_k(const Plan& plan, const SpectralBand& band, double black_body_k);
 
 /// Smallest accepted focal length, shorter than any collimator for a thermal camera. This limit detects a focal length
@@ -27,9 +27,9 @@ inline constexpr std::string_view transmission_row = "transmission of the collim
 inline constexpr std::string_view mirrors_row = "mirrors of the collimator";
 inline constexpr std::string_view aberration_row = "aberration of the collimator";
 
-/// Returns the budget of the plan with the rows of the collimator, which replace rows of the same names; unchanged
-/// without a collimator or without a budget. With a collimator, the position of the entrance pupil has no effect, so
-/// its row is 0.
+/// Returns the budget of the plan with the rows of the collimator. These rows replace rows of the same names. The
+/// budget is unchanged without a collimator, and if the plan has no budget. With a collimator, the position of the
+/// entrance pupil has no effect, so its row is 0.
 [[nodiscard]] UncertaintyPlan budget_with_collimator(const Plan& plan, const SpectralBand& band);
 
 }  // namespace todbench

@@ -27,15 +27,15 @@ struct DescribedObserver {
 [[nodiscard]] Result<SensorSpec> load_sensor(std::string_view reference);
 /// Loads a sensor with its modules, for callers that run them.
 [[nodiscard]] Result<SensorSpec> load_sensor_with_modules(std::string_view reference);
-/// Loads an observer. Rejects an observer with a module, because plans have their own [[module]], and an observer with
-/// an eye, because only a plan has a display.
+/// Loads an observer. Rejects an observer with a module, because plans have their own [[module]]. Rejects an observer
+/// with an eye, because only a plan has a display.
 [[nodiscard]] Result<TemplateObserverSpec> load_observer(std::string_view reference);
 /// Loads an observer, with or without an eye, that looks at `display`.
 [[nodiscard]] Result<TemplateObserverSpec> load_observer_at(std::string_view reference, const ViewedDisplay& display);
 /// Fails if the observer has an eye, with the message "WORK does not model ...". Use it for work that does not model a
 /// display.
 [[nodiscard]] Result<void> refuse_eye(const TemplateObserverSpec& observer, std::string_view work);
-/// Fails with `invalid_input` at `origin` if the observer has no eye. Use it for work that requires an eye.
+/// Fails with `invalid_input` at `origin` if the observer has no eye. Use this function for work that requires an eye.
 [[nodiscard]] Result<void> require_eye(const TemplateObserverSpec& observer, std::string_view origin);
 /// Loads a plate. Rows of cut-outs: [[row]] size_mm, y_mm, x_mm = [...], apex = ["up", ...], optionally names = [...];
 /// default names are "row R, triangle T", counted from 1. Rectangles: [[rectangle]] x_mm, y_mm, width_mm, height_mm,

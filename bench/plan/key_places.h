@@ -135,7 +135,7 @@ inline void from_key_value(std::vector<int>& member, const KeyValue& value) {
   for (const double number : std::get<std::vector<double>>(value))
     member.push_back(number >= -1e9 && number <= 1e9 ? static_cast<int>(number) : -1);
 }
-/// A list without exactly two elements is ignored: the reader has already rejected it.
+/// Ignores a list without exactly two elements, because the reader has already rejected this list.
 inline void from_key_value(SceneMotion& member, const KeyValue& value) {
   const auto& numbers = std::get<std::vector<double>>(value);
   if (numbers.size() == 2) member = {.x_mrad_s = numbers[0], .y_mrad_s = numbers[1]};

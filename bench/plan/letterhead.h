@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Letterhead of a laboratory for its reports, from a TOML file. It consists of plain text and one picture, so a report
-// remains self-contained and executes no code.
+// Letterhead of a laboratory for its reports, from a TOML file. The letterhead consists of plain text and one picture,
+// so a report remains self-contained and executes no code.
 #pragma once
 
 #include <filesystem>

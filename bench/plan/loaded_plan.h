@@ -54,8 +54,8 @@ inline constexpr std::array<MeasurePlate, 5> measure_plates{{
     {&MeasuresPlan::mrtd, &MeasuresPlan::mrtd_plate, &PlanParts::mrtd_plate},
 }};
 
-/// Valid plan with the parts that it names: the start of every run, forecast and report. No file is read again later.
-/// Immutable; threads may share it.
+/// Valid plan with the parts that it names. Every run, forecast and report starts from this object. No file is read
+/// again later. Immutable; threads may share it.
 class LoadedPlan {
  public:
   /// Validates the plan and reads its parts with `find`. Errors: `invalid_input` about the key (validate(); part not
@@ -63,7 +63,7 @@ class LoadedPlan {
   [[nodiscard]] static Result<LoadedPlan> load(Plan plan, const ResourceFinder& find = find_resource);
   /// Combines a plan with parts already read, which must be the parts that the plan names. Errors: validate().
   [[nodiscard]] static Result<LoadedPlan> of(Plan plan, PlanParts parts);
-  /// Loads another plan and reads only the parts that this plan does not have.
+  /// Loads a different plan and reads only the parts that this plan does not have.
   [[nodiscard]] Result<LoadedPlan> with(Plan plan, const ResourceFinder& find = find_resource) const;
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
@@ -96,7 +96,7 @@ class LoadedPlan {
 /// Returns the plan with absolute paths of the files that it names; relative paths are relative to `folder`.
 [[nodiscard]] Plan with_absolute_references(Plan plan, const std::filesystem::path& folder);
 
-/// Fails if the observer has an eye but the plan has no display, or has a module in place of the observer.
+/// Fails if the observer has an eye and the plan either has no display or has a module in place of the observer.
 [[nodiscard]] Result<void> check_eye(const Plan& plan, const PlanParts& parts);
 
 /// Reads into `parts` the descriptions that `plan` names by keys of this type. Returns the mistakes by element of the

@@ -68,7 +68,7 @@ inline constexpr std::array all_target_kinds{TargetKind::scpi, TargetKind::promp
 /// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(TargetKind kind);
 
-/// [target] collimator: a mirror or lens that shows the plate at infinity. It replaces the distance.
+/// [target] collimator: a mirror or lens that shows the plate at infinity. The collimator replaces the distance.
 struct CollimatorPlan {
   double focal_length_mm = 0;    ///< 0: no collimator
   double focal_length_u_mm = 0;  ///< standard uncertainty
@@ -93,7 +93,7 @@ struct TargetPlan {
   std::string black_body_table = "scpi-black-body";  ///< command table: name or file
   std::string stage_table = "scpi-stage";
   /// Kind display: program that shows pictures, size of the picture, contrast of black and white on the screen (K of
-  /// the camera's scale), exponent of luminance over level, and settling time of the panel.
+  /// the camera's scale), exponent of luminance as a function of level, and settling time of the panel.
   std::string display = "todbench-gui --pictures";
   int display_width_px = 1920, display_height_px = 1080;
   double display_pixel_mm = 0, display_span_k = 0, display_gamma = 1, display_settle_s = 0.2;
@@ -118,8 +118,8 @@ struct TargetPlan {
   /// Largest deviation of the effective contrast from the set contrast; empty: derived from the budget
   /// (allowed_contrast_deviation()).
   std::optional<double> max_contrast_deviation_percent{};
-  /// A presentation begins when the contrast is within this percentage of the set contrast, and its contrast is
-  /// measured from its own frames; 0: the target must settle first.
+  /// Percentage of the set contrast within which a presentation begins; its contrast is then measured from its own
+  /// frames. 0: the target must settle first.
   double contrast_settling_band_percent = 0;
   /// Largest time by which the contrast in the middle of the plate lags behind the contrast at the large triangles;
   /// required for a ramp. Empty: not stated.
@@ -141,7 +141,7 @@ struct SimulationPlan {
   double tolerance_percent = 1;     ///< allowed numerical error of the 75 % acuity
   int microscan = 1;                ///< samples per pitch and axis; replaces the value of the sensor file
   int phases = 16;                  ///< sub-pixel shifts per plate, mounting and contrast of the twin
-  SceneMotion motion{};             ///< motion of the target; it acts through time constant, exposure and readout
+  SceneMotion motion{};             ///< motion of the target, which acts through time constant, exposure and readout
   std::vector<Effect> skip, force;  ///< effects left out, or simulated, regardless of the planner
   bool paired = true;               ///< graded answers: the twin also judges the camera's presentations
   bool operator==(const SimulationPlan&) const = default;
@@ -172,8 +172,8 @@ struct SchedulePlan {
   ScheduleKind kind = ScheduleKind::constant;
   double half_width_percent = 10;  ///< adaptive: target half-width of the 95 % interval of S75
   int max_presentations = 1000;    ///< adaptive: maximum over all contrasts
-  /// Ramp: rate of the contrast at `from_delta_t_k` (it decreases in proportion to the contrast), and the contrasts at
-  /// its beginning and end.
+  /// Ramp: rate of the contrast at `from_delta_t_k`, and the contrasts at the beginning and end of the ramp. The rate
+  /// decreases in proportion to the contrast.
   std::optional<double> ramp_k_per_s{}, from_delta_t_k{}, to_delta_t_k{};
   AnswersChoice answers = AnswersChoice::automatic;
   /// Successive valid frames that a graded answer averages: one number for all contrasts, or one for each of delta_t_k
@@ -232,7 +232,8 @@ struct ZoneLimit {
 
 /// Name of the acuity in [[limits.fleet]]; other rows use the names of quantities (quantity.h).
 inline constexpr std::string_view fleet_acuity = "acuity";
-/// Least number of units for a fleet: their standard deviation then has a relative standard error of a quarter.
+/// Least number of units of a fleet. The standard deviation of this number of units has a relative standard error of a
+/// quarter.
 inline constexpr int least_fleet_units = 10;
 
 /// Row of [[limits.fleet]]: distribution of the true values of earlier units, as written by `todbench history prior`.
@@ -254,7 +255,7 @@ struct LimitsPlan {
   std::vector<MeasureLimit> measures{};
   std::vector<ZoneLimit> zones{};
   ConformityRule rule = ConformityRule::guarded_acceptance_and_rejection;
-  /// Risk of a false acceptance at the acceptance limit. It sets the guard band in place of the 95 % interval.
+  /// Risk of a false acceptance at the acceptance limit. The risk sets the guard band in place of the 95 % interval.
   std::optional<double> guard_band_risk{};
   std::vector<FleetRow> fleets{};
   /// Spread of true acuities over the fleet; for the risks stated by `todbench plan`.
@@ -381,12 +382,12 @@ struct MeasuresPlan {
   bool absolute = false;
   /// Plate whose cut-out is larger than the picture, by name or file.
   std::string absolute_plate = "open";
-  /// Temperatures of the black body in rising order. They are shown upwards and downwards.
+  /// Temperatures of the black body in rising order. All temperatures are shown upwards and downwards.
   std::vector<double> absolute_temperatures_k{285, 290, 295, 300, 305};
   /// Frames averaged at each temperature.
   int absolute_frames = AbsoluteOptions{}.frames;
-  /// Shift of the black body on the stage that separates the fixed pattern of the camera from the non-uniformity of the
-  /// black body; 0: they are not separated.
+  /// Shift of the black body on the stage. This shift separates the fixed pattern of the camera from the non-uniformity
+  /// of the black body; 0: they are not separated.
   int absolute_shift_px = AbsoluteOptions{}.shift_px;
   /// Measures frame rate, jitter and gaps from the times of the frames.
   bool timing = false;
@@ -461,7 +462,7 @@ struct ReportPlan {
 /// Role of an instrument on the bench.
 enum class InstrumentRole {
   by_name,     ///< not stated; determined by "black body" or "plate stage" in the name of the row, otherwise `other`
-  black_body,  ///< its calibration enters the uncertainty budget
+  black_body,  ///< the calibration of the instrument enters the uncertainty budget
   plate_stage,
   other,  ///< the report lists it
 };
@@ -540,10 +541,10 @@ struct Plan {
   return plan.display != ViewedDisplay{};
 }
 
-/// Reads a plan by name ("demo") or file; the keys are the rows of bench/plan/..._keys.cpp, listed in
-/// docs/reference/plan-keys.md. Relative file names in the plan are relative to its folder; the result has absolute
-/// names. Errors: `invalid_input` with file and line (key or value unknown, missing, of the wrong type, out of range,
-/// contradictory, or a file not found).
+/// Reads a plan by name ("demo") or file. The keys are the rows of bench/plan/..._keys.cpp; docs/reference/plan-keys.md
+/// lists them. Relative file names in the plan are relative to its folder; the result has absolute names. Errors:
+/// `invalid_input` with file and line (key or value unknown, missing, of the wrong type, out of range, contradictory,
+/// or a file not found).
 [[nodiscard]] Result<Plan> load_plan(std::string_view reference);
 /// Parses text already read; relative file names are relative to `folder`.
 [[nodiscard]] Result<Plan> parse_plan(const Resource& resource, const std::filesystem::path& folder);

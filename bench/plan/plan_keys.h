@@ -42,7 +42,7 @@ struct KeyPlace {
   std::function<void(Plan&, std::size_t row, const KeyValue&)> set;
 };
 
-/// Value of an absent key that comes from another part of the plan instead of the default.
+/// Source of the value of an absent key: another part of the plan instead of the default.
 struct KeyFallback {
   std::string_view words{};  ///< text for documents: "value of the sensor"
   std::function<KeyValue(const Plan&, const PlanParts&)> value{};

@@ -41,7 +41,7 @@ enum class Side {
 /// Returns whether the contrast of each presentation is measured from its own frames.
 [[nodiscard]] bool has_own_contrasts(const Plan& plan);
 /// Returns the schedule of the plan. `ifov_mrad`: as for stimuli_options(). `functions`: psychometric functions of the
-/// twin by contrast. The stopping rule of an adaptive schedule uses them if they are fitted.
+/// twin by contrast. The stopping rule of an adaptive schedule uses these functions if they are fitted to the answers.
 [[nodiscard]] std::unique_ptr<TrialSchedule> make_schedule(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                            double ifov_mrad, Side side, const RandomStream& stream,
                                                            std::map<double, ProportionTable> functions = {});
@@ -61,11 +61,11 @@ inline constexpr int frames_of_graded_answers = 4;
 inline constexpr int least_graded_presentations = 8;
 /// Returns the frames per presentation that the plan states for a contrast; 0: not stated, or no such contrast.
 [[nodiscard]] int frames_at(const Plan& plan, double delta_t_k);
-/// Chooses the kind of answers that the plan names. If the plan names no kind, chooses graded answers if their
-/// intervals are validated: function of the twin without a lapse rate, contrasts in kelvin, and a ramp or at least
-/// eight presentations at each contrast. Otherwise chooses binary answers. No other code chooses the kind. The number
-/// of frames is for `delta_t_k` (empty: first contrast of the plan); it is four for graded answers if the plan does not
-/// state it.
+/// Chooses the kind of answers that the plan names. If the plan does not name the kind, chooses graded answers only
+/// when their intervals are validated: function of the twin without a lapse rate, contrasts in kelvin, and a ramp or at
+/// least eight presentations at each contrast. Otherwise chooses binary answers. No other code chooses the kind. The
+/// number of frames is for `delta_t_k` (empty: first contrast of the plan). If the plan does not state the number, it
+/// is four for graded answers.
 [[nodiscard]] AnswersTaken chosen_answers(const Plan& plan, const SensorSpec& sensor,
                                           std::optional<double> delta_t_k = std::nullopt);
 /// Returns the options with the equivalence margin of the limits; 10 % if the plan has none.

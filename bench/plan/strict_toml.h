@@ -73,7 +73,7 @@ class TomlReader {
 
   /// Succeeds if there was no mistake and every key of the document was read. Otherwise returns the first mistake by
   /// line, unknown keys before missing keys (a misspelt key is usually both), as `invalid_input` with its key. Covers
-  /// the whole document, whichever reader it is called on.
+  /// the whole document, regardless of the reader on which it is called.
   [[nodiscard]] Result<void> finish() const;
 
  private:

@@ -19,7 +19,7 @@ namespace todbench {
 /// followed by "?QUERY" if the recording needs a query. Errors: those of the recording; `calibration` if it has no
 /// temperatures.
 using TemperatureReader = std::function<Result<cv::Mat1d>(const std::string& file, int frames)>;
-/// Readers of the files that a set names. They are not part of this library.
+/// Readers of the files that a set names. The readers are not part of this library.
 struct SetReaders {
   TemperatureReader temperatures;
   PictureReader mask;
@@ -30,7 +30,7 @@ struct TargetSet {
   std::string name, description;
   std::vector<IdentificationTarget> targets;  ///< targets of the set, at least two
   std::vector<double> azimuths_deg;           ///< sides from which models are seen; empty: the views are pictures
-  std::vector<std::string> notes;             ///< text for people about backgrounds of pictures that are not uniform
+  std::vector<std::string> notes;             ///< messages about pictures whose background is not uniform
 };
 /// Loads a target set by name ("small-craft") or file. Files that it names are relative to its folder. Without readers
 /// a set of pictures is refused. Errors: `invalid_input` with the file (as load_scene(); a picture without a target, a

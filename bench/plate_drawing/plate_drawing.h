@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Purpose of a line. It is also the name of the layer of the line in the file.
+/// Purpose of a line. The purpose is also the name of the layer of the line in the file.
 enum class SheetLayer { cut, dimension, text };
 /// Returns the name of the layer, in capitals.
 [[nodiscard]] std::string_view to_string(SheetLayer layer);
@@ -72,9 +72,9 @@ struct MakingErrors {
   double thickness_mm = 1;
   double distance_m = 2;
 };
-/// Returns the errors for a triangle. A camera at the distance D sees, through a sheet of thickness t with straight
-/// walls, the intersection of the front outline with the back outline. The back outline is shifted by t r / D towards
-/// the centre of the plate, where r is the distance of the triangle from the centre.
+/// Returns the errors for a triangle. A camera at the distance D looks through a sheet of thickness t with straight
+/// walls. The camera sees the intersection of the front outline with the back outline. The back outline is shifted by t
+/// r / D towards the centre of the plate, where r is the distance of the triangle from the centre.
 [[nodiscard]] SizeErrors size_errors(const PlateTriangle& triangle, const MakingErrors& errors);
 
 /// Returns the drawing. Errors: `invalid_input` (a plate without cut-outs).

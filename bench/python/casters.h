@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Conversion between values of the libraries and values of Python: pictures to numpy arrays that share their pixels,
-// enumerators to their names, intervals and points to tuples. Every source file of the module includes this header.
+// Conversion between values of the libraries and values of Python. Pictures become numpy arrays that share their
+// pixels, enumerators become their names, and intervals and points become tuples. Every source file of the module
+// includes this header.
 #pragma once
 
 #include <pybind11/functional.h>
@@ -38,7 +39,7 @@ T take(Result<T> result) {
   if constexpr (!std::is_void_v<T>) return std::move(*result);
 }
 
-/// Returns a read-only array of the pixels without a copy. The array keeps them alive.
+/// Returns a read-only array of the pixels without a copy. The array keeps the pixels alive.
 template <typename Pixel>
 pybind11::array array_of(const cv::Mat_<Pixel>& picture) {
   namespace py = pybind11;

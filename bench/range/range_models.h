@@ -50,10 +50,10 @@ struct RangeQuestion {
   Atmosphere air{};                 ///< air between target and camera
   double extinction_u_percent = 0;  ///< relative standard uncertainty of the extinction
   /// Relative standard uncertainty of the thresholds of the MRTD, the MTDP-like curve and the CTF. TOD thresholds
-  /// contain their own.
+  /// contain their own uncertainties.
   double curve_u_percent = 0;
   /// Relative standard uncertainties of the temperature scale and of the angle of a pixel, from the budget of a
-  /// session. Used for the models by formula; the TOD curve already includes them.
+  /// session. The models by formula use these uncertainties; the TOD curve already includes them.
   double scale_u_percent = 0, ifov_u_percent = 0;
   FormulaConditions formula{};  ///< parameters of the models by formula
   /// Luminance contrast of the target, for TTP; empty: |dT| / (2 x scene contrast).

@@ -60,8 +60,8 @@ struct TurbulenceDecision {
   double bound_percent = 0;  ///< upper bound on the change of the acuity at the 75 % range
   std::string reason;        ///< a sentence
 };
-/// Decides like the planner of effects: turbulence is skipped if the bound on the change of the acuity, at the range
-/// without turbulence, is at most four fifths of the tolerance.
+/// Decides in the same way as the planner of effects. Turbulence is skipped if the bound on the change of the acuity,
+/// at the range without turbulence, is at most four fifths of the tolerance.
 [[nodiscard]] TurbulenceDecision decide_turbulence(const SensorSpec& sensor, double cn2, const RangeQuestion& question,
                                                    std::optional<double> still_r75_m, double tolerance_percent);
 

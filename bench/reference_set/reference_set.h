@@ -29,9 +29,9 @@ struct ReferenceSetOptions {
                                                 std::uint64_t number, const ReferenceSetOptions& options,
                                                 const std::stop_token& stop);
 
-/// Writes the set into an empty folder. For each case: CASE.tif (pages of 16 bits), CASE.todrec (the same frames with
-/// their scale), CASE-frames.csv and CASE-triangles.csv. For the set: set.json (truths and all settings), sensors,
-/// plates and observer as TOML, README.md and SHA256SUMS. The same seed gives the same bytes. Errors: `io`,
+/// Writes the set into an empty folder. Writes for each case: CASE.tif (pages of 16 bits), CASE.todrec (the same frames
+/// with their scale), CASE-frames.csv and CASE-triangles.csv. Writes for the set: set.json (truths and all settings),
+/// sensors, plates and observer as TOML, README.md and SHA256SUMS. The same seed gives the same bytes. Errors: `io`,
 /// `interrupted`.
 [[nodiscard]] Result<void> write_reference_set(const std::filesystem::path& folder, const ReferenceSetOptions& options,
                                                std::stop_token stop);

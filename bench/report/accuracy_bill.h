@@ -51,24 +51,26 @@ struct BillInput {
 
 /// Divides the time of a run into parts. A presentation begins when the target is in place and ends when the next
 /// change of the target begins. The first presentation of a set-up or a contrast also locates the plate and measures
-/// the contrast. The time for this is the excess over the median of the other presentations at the same contrast. If
-/// there are no other presentations, it is the excess over the forecast; without a forecast, it is not separated. If
-/// the presentations have no times, all time except the time of the physical measures counts as computing.
+/// the contrast. The time for both is the excess over the median of the other presentations at the same contrast. If
+/// there are no other presentations, the time is the excess over the forecast. Without a forecast, this time is not
+/// separated. If the presentations have no times, all time except the time of the physical measures counts as
+/// computing.
 ///
-/// The least time for the verdict is the time with the fewest presentations that are sufficient for it, in the same
-/// set-ups. The half-width from the trials is assumed to decrease with the square root of the number of presentations.
-/// Each set-up keeps at least one presentation, and for graded answers at least `least_graded_presentations` remain.
+/// The least time for the verdict is the time with the fewest presentations that are sufficient for the verdict, in the
+/// same set-ups. The half-width from the trials is assumed to decrease with the square root of the number of
+/// presentations. Each set-up keeps at least one presentation, and for graded answers at least
+/// `least_graded_presentations` remain.
 [[nodiscard]] AccuracyBill accuracy_bill(const BillInput& input);
 
-/// Returns one sentence for each reason for which the simulation leaves out effects: below the tolerance (with the
-/// bound of the change), on request (with the planner's estimate if there is one), neutral in this sensor and scene.
-/// Never empty.
+/// Returns one sentence for each reason for which the simulation leaves out effects. The reasons are: below the
+/// tolerance (with the bound of the change), on request (with the planner's estimate if there is one), and neutral in
+/// this sensor and scene. Never empty.
 [[nodiscard]] std::vector<std::string> left_out_sentences(const SensorPlan& effects);
 
-/// Returns the share of the presentations that is sufficient for a decision; above 1: more presentations than there
-/// are. `margin`: distance from the limit. `half_width`: half-width from the trials, which falls with the square root
-/// of the number of presentations. `floor`: half-width that does not fall. All three are 100 times ln acuity. Empty:
-/// the floor is not below the margin.
+/// Returns the share of the presentations that is sufficient for a decision. A value above 1 means that more
+/// presentations are necessary. `margin`: distance from the limit. `half_width`: half-width from the trials, which
+/// falls with the square root of the number of presentations. `floor`: half-width that does not fall. All three are 100
+/// times ln acuity. Empty: the floor is not below the margin.
 [[nodiscard]] std::optional<double> share_for_decision(double half_width, double margin, double floor);
 
 /// Sentences for plans without a budget or without a limit.

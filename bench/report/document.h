@@ -12,7 +12,7 @@
 
 namespace todbench {
 
-/// Role of a phrase. Good, bad and open phrases also carry a sign, so that they are readable in black and white.
+/// Role of a phrase. Good, bad and open phrases also carry a sign, so they are readable in black and white.
 enum class Meaning {
   plain,
   strong,

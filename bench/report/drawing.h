@@ -12,7 +12,7 @@
 namespace todbench {
 
 /// Colours of the palette of Okabe and Ito (2008), which colour-blind readers can distinguish; each has a light and a
-/// dark shade. Markers and lines differ too, so that a black-and-white print is readable.
+/// dark shade. Markers and lines also differ, so that a black-and-white print is readable.
 enum class PlotTone { first, second, third, muted };
 
 /// Position in units of the drawing: x to the right, y downwards.
@@ -107,8 +107,8 @@ struct LabelStyle {
 inline constexpr std::array all_label_roles{LabelRole::x_tick, LabelRole::y_tick, LabelRole::x_axis,
                                             LabelRole::y_axis, LabelRole::note,   LabelRole::legend};
 
-/// Colours as #rrggbb. Text has a contrast of at least 4.5 to 1 and lines of at least 3 to 1 against the ground (WCAG
-/// 2.1), except the grid, which is decoration.
+/// Colours as #rrggbb. Text has a contrast of at least 4.5 to 1 against the ground, and lines of at least 3 to 1 (WCAG
+/// 2.1). The grid is an exception, because it is decoration.
 struct DrawingPalette {
   std::string_view ground, ink, grid, muted;
   std::array<std::string_view, 4> tones;  ///< by PlotTone

@@ -12,7 +12,7 @@
 namespace todbench {
 
 // Each function returns the figures of the camera (or of the simulated sensor, if `camera` is false) and of the twin;
-// empty if both lack the measure.
+// empty if the measure exists for neither of them.
 
 /// Returns figures of the signal transfer.
 [[nodiscard]] std::optional<FigurePairs> transfer_figures(const SessionMeasures& measures, bool camera);

@@ -18,9 +18,9 @@ enum class PlotMarker { none, disc, square, bar };
 /// Line through the points of a series.
 enum class PlotLine { none, solid, dashed, dotted };
 
-/// Point, or only its bounds. An interval with one open limit is drawn as an arrow to the edge of the plot; with two
-/// open limits it is not drawn. A point without x or y has no marker and interrupts the line. Its interval is drawn
-/// only if the other coordinate exists.
+/// Point, or only its bounds. An interval with one open limit is drawn as an arrow to the edge of the plot. An interval
+/// with two open limits is not drawn. A point without x or y has no marker and interrupts the line. The interval of
+/// this point is drawn only if the other coordinate exists.
 struct PlotPoint {
   std::optional<double> x, y;
   Interval x_interval, y_interval;
@@ -34,7 +34,7 @@ struct PlotSeries {
   PlotLine line = PlotLine::none;
   PlotLine legend_line = PlotLine::none;  ///< line in the legend only, if the line itself is a separate series
   std::vector<PlotPoint> points;
-  double dodge_px = 0;  ///< shifts the series down, so that intervals of two series do not hide each other
+  double dodge_px = 0;  ///< shifts the series down to keep the intervals of two series apart
 };
 
 /// Range of x over the full height.

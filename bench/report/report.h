@@ -33,8 +33,8 @@
 
 namespace todbench {
 
-/// Verdict at the top of a report. A report shows the decisions that the session contains; it makes no decisions
-/// itself. The verdict of an interrupted run or of a run without limits is never "pass".
+/// Verdict at the top of a report. A report only shows the decisions that the session contains. The verdict of an
+/// interrupted run or of a run without limits is never "pass".
 enum class ReportVerdict {
   pass,          ///< every limit is met
   fail,          ///< a limit is not met
@@ -79,7 +79,7 @@ struct ReportData {
 
   std::optional<SessionMeasures> measures;  ///< physical measures; empty: not requested
 
-  /// Limits of the acuity and thresholds at the display. They do not affect the verdict.
+  /// Limits of the acuity and thresholds at the display. Both do not affect the verdict.
   std::optional<DisplayRecord> at_display;
 
   /// Uncertainty of the measured curve, or of the curve of a simulation alone.

@@ -36,7 +36,7 @@ inline constexpr std::string_view one_sided_note =
 [[nodiscard]] Section curve_section(const ReportData& data);
 [[nodiscard]] std::optional<Section> psychometric_section(const ReportData& data);
 [[nodiscard]] std::optional<Section> human_section(const ReportData& data);
-/// Returns MRTD and MDTD of the model and of people with their conditions, and how they differ from STANAG 4349; empty
+/// Returns MRTD and MDTD of the model and of people with their conditions, and the differences from STANAG 4349; empty
 /// if they were not measured.
 [[nodiscard]] std::optional<Section> mrtd_section(const ReportData& data);
 /// Returns the factors that limit the acuity, and the thresholds of an operator at the display.

@@ -25,7 +25,7 @@ struct ReproducedThreshold {
   std::string graded_method{};
 };
 
-/// Kind of a figure. It determines whether differences are relative or in percentage points.
+/// Kind of a figure. The kind determines whether differences are relative or in percentage points.
 enum class FigureKind {
   amount,  ///< a value in its unit; differences are relative
   share,   ///< share of a total in percent; differences are in percentage points

@@ -29,10 +29,11 @@ struct AnswersAtSize {
 [[nodiscard]] Interval wilson_interval(double correct, double total);
 
 /// Returns the 95 % interval of the proportion at a size. Binary answers: Wilson's interval, with all answers treated
-/// as independent. Graded answers scatter less than binomially. Their interval is therefore m -+ t s, limited to 0 and
-/// 1, with s^2 = K / (K - 1) sum (c - m n)^2 / N^2. The sum is over the K presentations, each with n trials and the sum
-/// c of their graded answers. N is the number of all trials, m = sum c / N, and t is Student's t. The interval is open
-/// for fewer than two presentations, and wider than necessary if the effects of the phases in a set-up cancel.
+/// as independent. Graded answers scatter less than binomially. The interval of graded answers is therefore m -+ t s,
+/// limited to 0 and 1, with s^2 = K / (K - 1) sum (c - m n)^2 / N^2. The sum is over the K presentations, each with n
+/// trials and the sum c of their graded answers. N is the number of all trials, m = sum c / N, and t is Student's t.
+/// The interval is open for fewer than two presentations, and wider than necessary if the effects of the phases in a
+/// set-up cancel.
 [[nodiscard]] Interval proportion_interval(const AnswersAtSize& answers);
 
 /// Curve with its name in figures.

@@ -38,14 +38,14 @@ struct BlindComparison {
   std::vector<ReferenceTruth> truths;  ///< true values as sealed
   std::string sealed_sha256;           ///< SHA-256 of the sealed file, which every protocol states
 };
-/// Writes into an empty folder: sealed.json with the true values, which the coordinator keeps, and for each laboratory
-/// a folder laboratory-N with items.csv, ITEM.tif, ITEM.todrec, ITEM-frames.csv, ITEM-triangles.csv, plates, observer,
+/// Writes into an empty folder: sealed.json with the true values, for the coordinator only, and for each laboratory a
+/// folder laboratory-N with items.csv, ITEM.tif, ITEM.todrec, ITEM-frames.csv, ITEM-triangles.csv, plates, observer,
 /// protocol.html, results.csv to fill in, and SHA256SUMS. Every laboratory receives different frames of the same
 /// cameras. The same seed gives the same bytes. Errors: `io`, `interrupted`.
 [[nodiscard]] Result<BlindComparison> write_blind_comparison(const std::filesystem::path& folder,
                                                              const BlindOptions& options, std::stop_token stop);
 
-/// Judges the recordings of one laboratory with an observer that is given the positions of the triangles, and fits a
+/// Judges the recordings of one laboratory with an observer that knows the positions of the triangles, and fits a
 /// Weibull function to its answers. The standard uncertainty follows from the 95 % interval of the fit. Errors:
 /// `invalid_input` (no such folder, damaged files), `not_identifiable` (an item without a threshold or without both
 /// limits of its interval), `interrupted`.

@@ -17,7 +17,7 @@ struct ProtocolFacts {
   int frames = 0;
   std::string sealed_sha256;  ///< SHA-256 of the file with the true values, which the coordinator keeps
 };
-/// Returns the protocol: items, files, measurand and the file of results. It contains no sealed value.
+/// Returns the protocol: items, files, measurand and the file of results. The protocol contains no sealed value.
 [[nodiscard]] Document blind_protocol(const ProtocolFacts& facts);
 
 }  // namespace todbench

@@ -66,7 +66,7 @@ struct ItemComparison {
 struct LaboratorySummary {
   std::string laboratory;
   int items = 0;
-  double combined_zeta = 0;  ///< sum of its zeta against the other laboratories over sqrt(items); standard normal
+  double combined_zeta = 0;  ///< sum of the zeta against the other laboratories, over sqrt(items); standard normal
   double p = 1;              ///< chance probability of at least this combined zeta, for this laboratory alone
   bool outlying = false;
 };
@@ -76,7 +76,7 @@ struct OutlyingResult {
   std::string laboratory, item, quantity;  ///< empty item: the laboratory over all its items
   double zeta = 0;                         ///< zeta against the results that were not yet excluded when this one was
                                            ///< found
-  double p = 0;                            ///< probability that any laboratory has such a deviation by chance
+  double p = 0;                            ///< probability that any laboratory has a deviation of this size by chance
 };
 
 /// Evaluation of a comparison.

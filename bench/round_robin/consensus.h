@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Result of one laboratory for one item. Its unit is the unit of the item.
+/// Result of one laboratory for one item. The unit of the value is the unit of the item.
 struct LaboratoryValue {
   std::string laboratory;
   double value = 0;
@@ -42,9 +42,10 @@ struct ConsistencyCheck {
 /// Tests the consistency of these values.
 [[nodiscard]] ConsistencyCheck consistency(std::span<const LaboratoryValue> values);
 
-/// Returns the positions of the largest subset that is consistent; if there are several such subsets, of the subset
-/// with the smallest chi2 (Cox 2007). Up to 16 values every subset is tried. With more values, the value farthest from
-/// the mean of the other values, in units of its uncertainty, is removed until the remaining values are consistent.
+/// Returns the positions of the largest consistent subset. Among several subsets of this size, chooses the subset with
+/// the smallest chi2 (Cox 2007). With up to 16 values, every subset is tried. With more values, the function removes
+/// the value farthest from the mean of the other values, in units of its uncertainty, until the remaining values are
+/// consistent.
 [[nodiscard]] std::vector<std::size_t> largest_consistent_subset(std::span<const LaboratoryValue> values);
 
 /// Median by Monte Carlo (Cox 2002, procedure B). The same seed gives the same draws.
@@ -61,9 +62,9 @@ inline constexpr int median_draws = 20'000;
 [[nodiscard]] MedianConsensus monte_carlo_median(std::span<const LaboratoryValue> values, std::uint64_t seed,
                                                  MedianDetail detail);
 
-/// Return the variance between laboratories in excess of their uncertainties, 0 or more: the estimate of moments by
-/// DerSimonian and Laird 1986 (equation 8), and the estimate by Paule and Mandel 1982, at which the generalised chi2
-/// equals its expectation N - 1.
+/// Return the variance between laboratories in excess of their uncertainties, 0 or more. The first is the estimate of
+/// moments by DerSimonian and Laird 1986 (equation 8). The second is the estimate by Paule and Mandel 1982, at which
+/// the generalised chi2 equals its expectation N - 1.
 [[nodiscard]] double dersimonian_laird_variance(std::span<const LaboratoryValue> values);
 [[nodiscard]] double paule_mandel_variance(std::span<const LaboratoryValue> values);
 

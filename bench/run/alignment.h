@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Alignment of a bench: the present position of the plate in the picture, and the reasons why it cannot be measured
-// yet.
+// Alignment of a bench: the present position of the plate in the picture, and the reasons why the set-up cannot be
+// measured yet.
 #pragma once
 
 #include <functional>
@@ -68,8 +68,8 @@ struct AlignmentListener {
                                       const std::vector<int>& sides, const RegistrationOptions& options,
                                       double expected_blur_px, const std::optional<Registration>& first);
 
-/// Shows the first plate of the plan at its highest contrast and looks at it repeatedly until stopped; a stop is
-/// success. Errors: those of open_bench(); `disconnected`, `integrity`.
+/// Shows the first plate of the plan at its highest contrast and evaluates its position repeatedly until stopped. A
+/// stop is a success. Errors: those of open_bench(); `disconnected`, `integrity`.
 [[nodiscard]] Result<void> align_plan(const Plan& plan, const AlignmentListener& listener, std::stop_token stop);
 
 }  // namespace todbench

@@ -42,8 +42,8 @@ struct ExperimentListener {
   /// Called for every frame of the camera as it arrives, valid or not. Not called for frames of the twin.
   std::function<void(const Frame&)> on_frame{};
   std::function<void(SessionCurve, const SetUpRecord&)> on_set_up{};
-  /// Called when a trial has been written to the disk. The patch is the one that the observer judged; the reference to
-  /// it is valid only during the call.
+  /// Called when a trial has been written to the disk. The patch is the one that the observer judged. Its reference is
+  /// valid only during the call.
   std::function<void(SessionCurve, const Trial&, const Patch&)> on_trial{};
 };
 
@@ -52,7 +52,7 @@ struct ExperimentOptions {
   std::filesystem::path folder;                      ///< session folder to create
   ExistingFolder existing = ExistingFolder::refuse;  ///< treatment of a folder that is not empty
   ExperimentHost host{};                             ///< controls the run
-  std::optional<OriginRecord> origin{};  ///< origin of a run on the recorded frames of another session; empty: none
+  std::optional<OriginRecord> origin{};  ///< origin of a run on the recorded frames of an earlier session; empty: none
 };
 
 /// Result of a run. The session folder contains the same results.
@@ -69,8 +69,8 @@ struct ExperimentOutcome {
   RunFigures figures;                             ///< figures of the run that produced `curve`
   double twin_s = 0;                              ///< duration of the simulation of `twin`
   std::optional<TimeForecast> forecast{};         ///< made before the first presentation; as Provenance::forecast
-  std::optional<Error> ended_by;                  ///< reason of an early stop; the folder is valid, marked interrupted
-  std::vector<Presentation> presentations{};      ///< presentations of `curve`
+  std::optional<Error> ended_by;              ///< reason for an early stop; the folder is valid and marked interrupted
+  std::vector<Presentation> presentations{};  ///< presentations of `curve`
   std::optional<CurveUncertainty> uncertainty{};  ///< uncertainty of `curve`; empty if the plan has no budget
 };
 

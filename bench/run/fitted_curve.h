@@ -23,7 +23,7 @@
 namespace todbench {
 
 /// Answers of a run in the form in which they are fitted. If the contrast of each presentation was measured separately,
-/// also the psychometric function as a function of contrast.
+/// `surface` contains the psychometric function as a function of contrast.
 struct FittedTrials {
   std::vector<Trial> own{};                  ///< answers at the set contrasts
   std::optional<ContrastSurface> surface{};  ///< empty: contrasts were settled
@@ -74,9 +74,9 @@ struct FittedCurve {
   [[nodiscard]] const TodCurve& functions_of_twin() const { return by_twin ? *by_twin : curve; }
 };
 
-/// Starts the fit on its own thread. If an effective contrast differs by more than 2 % from the set contrast, it needs
-/// its own function of the twin, which takes about a second to compute. All referenced objects must outlive the task.
-/// `functions`: null if the adaptive schedule already computed them (`measured.functions`).
+/// Starts the fit on its own thread. An effective contrast that differs by more than 2 % from the set contrast needs a
+/// separate function of the twin. Computing this function takes about a second. All referenced objects must outlive the
+/// task. `functions`: null if the adaptive schedule already computed them (`measured.functions`).
 [[nodiscard]] std::unique_ptr<BackgroundTask<FittedCurve>> fit_in_background(
     TodCurve curve, const MeasuredRun& measured, const FittedTrials& to_fit, const Plan& plan,
     const ExperimentInputs& inputs, BackgroundTwinFunctions* functions, const CameraSurrogate& surrogate);

@@ -24,8 +24,8 @@ struct GreySummary {
   int frames = 0;
   double levels = 0;  ///< mean contrast
   double levels_per_k = 0, lowest_per_k = 0, highest_per_k = 0;
-  /// Root mean square over the frames. It does not decrease with the number of frames, because frames share fixed
-  /// pattern and rounding.
+  /// Root mean square over the frames. This value does not decrease with the number of frames, because frames share
+  /// fixed pattern and rounding.
   double relative_uncertainty = 0;
   double noise_steps = 0;  ///< smallest value of all frames
 };

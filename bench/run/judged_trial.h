@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Answers with the patches that were judged, for people who judge them again.
+// Answers with the judged patches. People can judge these patches again.
 #pragma once
 
 #include <cstdint>

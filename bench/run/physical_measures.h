@@ -43,8 +43,8 @@ class BackgroundMeasures {
   std::optional<BackgroundTask<Result<std::optional<CameraMeasures>>>> made_;
 };
 
-/// Adds the picture of the plan's sensor to the mean picture of the plate, if any; adds a reason if the two are not
-/// comparable.
+/// Adds the picture of the plan's sensor to the mean picture of the plate, if there is one. Adds a reason if the two
+/// pictures are not comparable.
 void compare_picture(CameraMeasures& measures, const LoadedPlan& loaded, const ExperimentInputs& inputs);
 
 }  // namespace todbench

@@ -15,7 +15,7 @@
 
 namespace todbench {
 
-/// Writes pages of a report into a folder and returns their names, relative to it.
+/// Writes pages of a report into a folder and returns their names, relative to the folder.
 using PageWriter = std::function<Result<std::vector<std::string>>(const ReportData& data)>;
 
 /// Returns the content of a session's report: report_data() with the answers of a person, if there are any. `session`
@@ -35,13 +35,13 @@ using PageWriter = std::function<Result<std::vector<std::string>>(const ReportDa
                                                const std::stop_token& stop = {});
 /// File of the order in a session.
 inline constexpr std::string_view order_file = "inputs/order.toml";
-/// Returns a function that calls `write` with an order (a file with a section [order]), which the session stores for
-/// later reports. Errors: those of load_order(), `io`.
+/// Returns a function that calls `write` with an order (a file with a section [order]). The session stores the order
+/// for later reports. Errors: those of load_order(), `io`.
 [[nodiscard]] Result<PageWriter> with_order(std::filesystem::path folder, const std::filesystem::path& order,
                                             PageWriter write);
 /// Returns a function that writes report.html and report.csv.
 [[nodiscard]] PageWriter html_page(std::filesystem::path folder);
-/// Returns the same function with a letterhead, which the session stores for later reports.
+/// Returns the same function with a letterhead. The session stores the letterhead for later reports.
 [[nodiscard]] PageWriter html_page_with(std::filesystem::path folder, Letterhead letterhead);
 
 }  // namespace todbench

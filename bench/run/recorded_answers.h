@@ -16,13 +16,13 @@
 
 namespace todbench {
 
-/// Version of the questions of a measurement and their order. A recording states its version; a recording of another
-/// version is not replayed.
+/// Version of the questions of a measurement and of their order. Each recording states its version. A recording of a
+/// different version is not replayed.
 inline constexpr std::string_view answers_format = "2";
 
 /// Returns the record of the time of the clock.
 [[nodiscard]] Reading clock_answer(Moment why, std::int64_t now_ns);
-/// Returns the record of whether the run pauses.
+/// Returns the record of the answer to the question whether the run pauses.
 [[nodiscard]] Reading rest_answer(bool rests);
 /// Returns the record of the number of frames requested while the target presented a state.
 [[nodiscard]] Reading calls_answer(std::int64_t calls);
@@ -62,7 +62,7 @@ class RecordedAnswers {
  private:
   [[nodiscard]] Result<std::string> take(const std::string& tag);
   [[nodiscard]] Result<std::int64_t> take_whole(const std::string& tag);
-  /// Reports an answer that differs from the expected kind.
+  /// Reports an answer whose kind differs from the expected kind.
   [[nodiscard]] tl::unexpected<Error> refuse(const std::string& expected, const std::string& found);
 
   std::string name_;

@@ -19,9 +19,9 @@ struct StreamHeader;
 /// Returns the path of the recording of a session.
 [[nodiscard]] std::filesystem::path recorded_frames(const std::filesystem::path& session);
 
-/// Starts recording. Appends all inputs of the measurement beyond the plan to the recording of the session: frames,
-/// failures, reports of the target and answers of the host, each with its question. At the end, the returned writer
-/// reports whether the recording is complete on disk. Errors: `io`.
+/// Starts recording. Appends all inputs of the measurement beyond the plan to the recording of the session. These are
+/// frames, failures, reports of the target and answers of the host, each with its question. At the end, the returned
+/// writer reports whether the recording is complete on disk. Errors: `io`.
 [[nodiscard]] Result<std::shared_ptr<FrameStreamWriter>> record_bench(OpenedBench& bench,
                                                                       const std::filesystem::path& session);
 

@@ -46,9 +46,9 @@ struct RecordedRun {
 
 /// Measures again with the plan and the frames of the session, simulates the twin again, and compares trials and fits
 /// byte for byte. An interrupted session is replayed to the end of its frames and compared to the end of its trials.
-/// Losses that the run survived are replayed too. `accept_changed` of `opening` accepts changed files, and the new
-/// session states it. Errors: `invalid_input` (not a session, no recording, modules that may not run, changed files, or
-/// a recording by a program version with other questions), those of measure_plan().
+/// Losses that the run survived are replayed too. `accept_changed` of `opening` accepts changed files; the new session
+/// records this. Errors: `invalid_input` (not a session, no recording, modules that may not run, changed files, or a
+/// recording by a program version with other questions), those of measure_plan().
 [[nodiscard]] Result<ReplayOutcome> replay_session(const std::filesystem::path& session,
                                                    const ExperimentOptions& options, const ExperimentListener& listener,
                                                    std::stop_token stop, const Opening& opening = {},

@@ -10,11 +10,11 @@
 
 namespace todbench {
 
-/// Returns the name of a session, which is the name of its folder, independent of how the path is written.
+/// Returns the name of a session. This is the name of its folder, regardless of the form of the path.
 [[nodiscard]] std::string session_name(const std::filesystem::path& folder);
 
-/// Reads the data for render_report() from a session. `name`: of the session. Errors: `invalid_input` if a plate or
-/// sensor of the plan cannot be read.
+/// Reads the data for render_report() from a session. `name`: name of the session. Errors: `invalid_input` if a plate
+/// or sensor of the plan cannot be read.
 [[nodiscard]] Result<ReportData> report_data(const Session& session, const std::string& name);
 
 }  // namespace todbench

@@ -17,11 +17,11 @@ namespace todbench {
                                                        RunModules modules = RunModules::no);
 
 /// Measures the plan of an interrupted session to its end, into a new session. The recorded frames and answers
-/// reproduce the first part with the same trials. After them, the run continues with the camera as after a loss: the
-/// plate is located again, the presentation is repeated, and the gap is an interruption of the run (a new segment).
+/// reproduce the first part with the same trials. After this part, the run continues with the camera as after a loss:
+/// the plate is located again, the presentation is repeated, and the gap is an interruption of the run (a new segment).
 /// Camera, settings and temperature scale must match the recording. If the camera cannot be opened, the function waits
-/// for it as after a loss, at most `reconnect_s` of the plan. The new session records the frames of both parts, so that
-/// it can itself be resumed or replayed. Errors: those of measure_plan(); `invalid_input` for a different camera.
+/// for the camera as after a loss, at most `reconnect_s` of the plan. The new session records the frames of both parts
+/// and can therefore be resumed or replayed. Errors: those of measure_plan(); `invalid_input` for a different camera.
 [[nodiscard]] Result<ExperimentOutcome> resume_session(RecordedRun run, ExperimentOptions options,
                                                        const ExperimentListener& listener, std::stop_token stop);
 

@@ -19,8 +19,9 @@ void phase(SessionFolder& folder, const ExperimentListener& listener, const std:
 /// Reports a sentence to the log and the listener.
 void note(SessionFolder& folder, const ExperimentListener& listener, const std::string& sentence);
 
-/// Creates the folder, reserves disk space for the end, and writes all that is known before the first frame. Sets the
-/// start time in `provenance`. Errors: those of SessionFolder::create(); `io` if the disk has too little space.
+/// Creates the folder, reserves disk space for the end, and writes all facts that are known before the first frame.
+/// Sets the start time in `provenance`. Errors: those of SessionFolder::create(); `io` if the disk has too little
+/// space.
 [[nodiscard]] Result<SessionFolder> begin_session(const LoadedPlan& loaded, const ExperimentOptions& options,
                                                   Provenance& provenance);
 

@@ -72,7 +72,7 @@ class ControlApi {
   friend struct ControlHandlers;
   RunQueue& queue_;
   ControlOptions options_;
-  std::mutex listing_;  ///< one listing at a time, because it uses the network
+  std::mutex listing_;  ///< one listing at a time, because a listing uses the network
   CameraRegistry::Listing last_listing_;
 };
 

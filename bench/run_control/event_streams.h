@@ -30,7 +30,7 @@ class EventStreams {
   EventStreams(const EventStreams&) = delete;
   EventStreams& operator=(const EventStreams&) = delete;
 
-  /// Returns whether another stream is accepted.
+  /// Returns whether a further stream is accepted.
   [[nodiscard]] bool has_room() const;
   /// Takes ownership of the socket of a client whose response has begun. The socket is closed after the last state, or
   /// if there are too many streams.
@@ -48,7 +48,7 @@ class EventStreams {
     std::uint64_t version = 0;
     bool over = false;
     std::string unsent{};
-    Clock::time_point taken = Clock::now();  ///< last byte that the client took
+    Clock::time_point taken = Clock::now();  ///< time at which the client received the last byte
   };
   void work(const std::stop_token& stop);
   void wait();

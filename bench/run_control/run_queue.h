@@ -50,7 +50,7 @@ class RunQueue {
   /// Largest number of runs whose states are stored. The sessions of older runs stay on disk.
   static constexpr std::size_t most_kept = 200;
 
-  /// Session folders are created in `sessions`. `changed` is called after every change of a state.
+  /// Creates the queue. Session folders are created in `sessions`. `changed` is called after every change of a state.
   RunQueue(std::filesystem::path sessions, std::function<void()> changed);
   /// Stops the current run, which ends its session in order.
   ~RunQueue();

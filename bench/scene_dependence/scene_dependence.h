@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Test whether the response of a camera to the triangles depends on the rest of its field: a hot bar outside and inside
-// the field.
+// Test whether the response of a camera to the triangles depends on the rest of its field. A hot bar is outside or
+// inside the field.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Session of a scene-dependence test. It has no curve; its numbers are measures, and its only limit is the tolerance.
+// Session of a scene-dependence test. The session has no curve; its numbers are measures, and its only limit is the
+// tolerance.
 #pragma once
 
 #include <optional>

@@ -41,18 +41,19 @@ class BoundedQueue : public httplib::TaskQueue {
 
 /// Server with one request per connection. The request must arrive within one second, and the response must be sent
 /// within three seconds after its first byte. The server closes a connection if its file descriptor is among the last
-/// available to the process, because the run needs these.
+/// available to the process, because the run needs these descriptors.
 class GuardedServer : public httplib::Server {
  public:
   GuardedServer();
-  /// For handlers: passes the socket of this request to `take`, which then owns it, after the response is sent. Without
-  /// this call the socket is closed.
+  /// For handlers: passes the socket of this request to `take` after the response is sent. `take` then owns the socket.
+  /// Without this call the socket is closed.
   static void hand_over(std::function<void(int socket)> take);
   /// For handlers: extends the three seconds for sending the response, for large files.
   static void allow_more_time(std::chrono::milliseconds more);
   /// Listens on its own thread, after bind_to(). Returns as soon as stop_listening() can be called.
   void start_listening();
-  /// Ends that thread, if there is one. The owner calls it before objects that handlers use are destroyed.
+  /// Ends the thread of start_listening(), if there is one. The owner calls it before objects that handlers use are
+  /// destroyed.
   void stop_listening();
 
  private:
@@ -65,7 +66,7 @@ class GuardedServer : public httplib::Server {
 void guard(httplib::Response& response);
 /// Sets the headers for a file of a session, which contains its style and pictures and runs no script.
 void guard_report(httplib::Response& response);
-/// Returns 128 random bits as text. They come from the random source of the system and not from the seed of the
+/// Returns 128 random bits as text. The bits come from the random source of the system and not from the seed of the
 /// experiment, because they must not be predictable.
 [[nodiscard]] std::string random_token();
 /// Binds to the address and returns the port. Port 0 selects any free port. Errors: `io` (port in use, or not an

@@ -41,7 +41,7 @@ struct LiveState {
   std::string step{};  ///< request to the operator, one line per step
   std::uint64_t done = 0, planned = 0;
   std::optional<std::string> verdict{}, reason{};
-  std::uint64_t curve = 0, picture = 0;  ///< change with curve.svg and picture.png; 0: absent
+  std::uint64_t curve = 0, picture = 0;  ///< version numbers of curve.svg and picture.png; 0: absent
   bool over = false;
 };
 /// Returns the content of state.json.
@@ -50,8 +50,8 @@ struct LiveState {
 /// Returns a frame as a grey PNG from its 0.05 % to its 99.95 % quantile; empty if the frame has no pixels.
 [[nodiscard]] std::string picture_of(const Frame& frame);
 
-/// Renders curve and picture on its own thread, about twice a second. Calls from the run only store values, so that
-/// they do not delay it.
+/// Renders curve and picture on its own thread, about twice a second. Calls from the run only store values and
+/// therefore do not delay the run.
 class LiveRun {
  public:
   /// Receives new content, on the drawing thread or on the thread of end().

@@ -18,8 +18,8 @@ struct LivePages {
   std::string picture_png;  ///< empty: not available yet
 };
 
-/// Server on its own threads. New content replaces the old content, and show() does not wait for a connection, so a
-/// slow or stalled browser does not delay the run.
+/// Server on its own threads. New content replaces the old content, and show() does not wait for a connection. A slow
+/// or stalled browser therefore does not delay the run.
 class LiveServer {
  public:
   /// Starts the server. Errors: `io` (cannot listen on the address).

@@ -21,8 +21,8 @@ struct AnsweredInstrument {
 /// Returns the instruments of a description "ROLE (VENDOR MODEL, serial S); ROLE (...)".
 [[nodiscard]] std::vector<AnsweredInstrument> answered_instruments(std::string_view target);
 
-/// Returns a sentence for each row that does not belong to the instrument on the bench: the row states a
-/// serial number, but the instrument of its role answered with a serial number that no row states.
+/// Returns a sentence for each row that does not belong to the instrument on the bench. Such a row states a serial
+/// number, but the instrument of its role answered with a serial number that no row states.
 [[nodiscard]] std::vector<std::string> contradicted_instruments(std::span<const InstrumentPlan> rows,
                                                                 std::string_view target);
 

@@ -45,16 +45,16 @@ struct BarsThreshold {
 /// Returns one threshold for each place of the answers: x before y, low frequencies first, spots last.
 [[nodiscard]] std::vector<BarsThreshold> bars_thresholds(const BarsSitting& sitting);
 
-/// Mean threshold of one place over people. All people judged the same frames, so the set-ups contribute an error that
-/// is common to all people. The interval combines the scatter between people with this common variance (n V - v) / (n -
-/// 1). n is the number of people, V the jackknife variance of the mean over the set-ups, and v the mean of the
-/// jackknife variances of the single sittings.
+/// Mean threshold of one place over people. All people judged the same frames. The set-ups therefore contribute an
+/// error that is common to all people. The interval combines the scatter between people with this common variance (n V
+/// - v) / (n - 1). n is the number of people, V the jackknife variance of the mean over the set-ups, and v the mean of
+/// the jackknife variances of the single sittings.
 struct BarsMean {
-  /// Place of the mean. Its threshold is not set.
+  /// Place of the mean. The threshold of the place is not set.
   BarsThreshold of{};
   MeanOverPeople over{};
-  /// Number of sittings without a threshold. If above 0, there is no mean, because it would represent only the best
-  /// observers.
+  /// Number of sittings without a threshold. If above 0, there is no mean, because the mean would represent only the
+  /// best observers.
   int without = 0;
   int answers = 0;  ///< number of answers in all sittings
 };

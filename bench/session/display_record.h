@@ -59,11 +59,10 @@ struct DisplayedPoint {
   bool operator==(const DisplayedPoint&) const = default;
 };
 
-/// Record that is stored with the results of a session. It does not affect the verdict.
+/// Record that is stored with the results of a session. The record does not affect the verdict.
 struct DisplayRecord {
   std::string observer;  ///< name of an observer with an eye
-  /// Empty if this observer gave the answers of the session, because the curve of the session then contains these
-  /// thresholds.
+  /// Empty if this observer gave the answers of the session. The curve of the session then contains these thresholds.
   std::vector<DisplayedPoint> points;
   std::vector<AcuityLimits> limits;
   bool operator==(const DisplayRecord&) const = default;

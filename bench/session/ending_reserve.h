@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Disk space reserved at the start of a session for the files of its end, so that a run that fills the disk can still
-// write them.
+// Disk space reserved at the start of a session for the files of its end. A run that fills the disk can still write
+// these files.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +9,9 @@
 
 namespace todbench {
 
-/// Groups of files written at the end of a session, in this order. Each group has a reserve, which is released before
-/// the group is written. A file can use space left over from earlier groups but not the reserves of later groups, so
-/// the manifest can always be written.
+/// Groups of files written at the end of a session, in this order. Each group has a reserve. The program releases this
+/// reserve before it writes the group. A file can use the space that earlier groups left over, but not the reserves of
+/// later groups. The manifest can therefore always be written.
 enum class EndingRoom {
   results,   ///< curves and comparison
   state,     ///< log, provenance and verdict

@@ -8,11 +8,12 @@
 
 namespace todbench {
 
-/// Succeeds if the folder has no symbolic links, so that everything written to it stays in it. Errors: `invalid_input`
+/// Succeeds if the folder has no symbolic links. Files written to the folder then stay in it. Errors: `invalid_input`
 /// with the first link.
 [[nodiscard]] Result<void> require_no_links(const std::filesystem::path& folder);
-/// Like require_no_links(), and also requires that the manifest (if any) or a signature lists every file. Call it
-/// before writing to a session. Reads no file contents. Errors: `invalid_input` with the first foreign file.
+/// Makes the checks of require_no_links(), and also requires that the manifest (if any) or a signature lists every
+/// file. Call it before writing to a session. Reads no file contents. Errors: `invalid_input` with the first foreign
+/// file.
 [[nodiscard]] Result<void> require_no_foreign_file(const std::filesystem::path& folder);
 
 }  // namespace todbench

@@ -18,7 +18,7 @@ namespace todbench {
 
 class JsonFields;
 
-/// Presentation of a patch. The picture that the person saw can be reproduced from these values.
+/// Presentation of a patch. These values are sufficient to reproduce the picture that the person saw.
 struct ShownPatch {
   /// Samples that the model observer judged.
   cv::Mat1f kelvin;

@@ -13,7 +13,7 @@
 
 namespace todbench {
 
-/// Figures of a run that `measure` and `simulate` report with the curve.
+/// Figures of a run that `measure` and `simulate` report together with the curve.
 struct RunFigures {
   double wall_s = 0;
   std::uint64_t frames_used = 0;

@@ -16,23 +16,24 @@ namespace todbench {
 inline constexpr std::string_view manifest_name = "manifest.json";
 
 /// Returns the files of a session with paths relative to its folder, sorted: the known files in the folder and all
-/// files in inputs/, frames/ and pictures/. Foreign files and manifest.json itself are not included.
+/// files in inputs/, frames/ and pictures/. Foreign files and manifest.json itself are excluded.
 [[nodiscard]] std::vector<std::string> session_files(const std::filesystem::path& folder);
-/// Returns whether the path can be in session_files(), so that some reader may use the file.
+/// Returns whether session_files() can contain the path, i.e. whether a reader may use the file.
 [[nodiscard]] bool is_session_file(std::string_view path);
-/// Returns whether the path is report.html, report.csv or report.pdf. They are made from the other files, and the
-/// program does not read them.
+/// Returns whether the path is report.html, report.csv or report.pdf. These pages are made from the other files, and
+/// the program does not read them.
 [[nodiscard]] bool is_report_page(std::string_view path);
 
 /// Comparison of a folder with its manifest. Paths are relative to the folder, sorted.
 struct ManifestCheck {
-  /// Files that differ from their entries. Includes manifest.json if the program did not write it in this form: it is
-  /// unreadable, its own digest does not cover its entries, or its bytes differ from the canonical form of the entries.
+  /// Files that differ from their entries. Includes manifest.json if the program did not write the file in this form.
+  /// This is the case if it is unreadable, if its own digest does not cover its entries, or if its bytes differ from
+  /// the canonical form of the entries.
   std::vector<std::string> changed;
   std::vector<std::string> missing;  ///< listed but absent; includes manifest.json if absent
   std::vector<std::string> foreign;  ///< present but not listed, of any type; empty without a manifest
-  /// Listed files that are symbolic links or lie in a linked folder, and manifest.json if it is one: their content can
-  /// change without a change of the session folder.
+  /// Listed files that are symbolic links or lie in a linked folder, and manifest.json if it is a link. Their content
+  /// can change without a change of the session folder.
   std::vector<std::string> links{};
   /// Digest of the manifest, as printed in reports: SHA-256 of the lines "SHA256  PATH" of all files except the report
   /// pages, in the order of the manifest. Empty without a manifest.
@@ -56,8 +57,8 @@ struct ManifestEntry {
   std::string sha256;
   bool operator==(const ManifestEntry&) const = default;
 };
-/// Entries by path. Recorded frames may have many gigabytes. Code that has read a file therefore passes the entry on,
-/// so that the file is read once.
+/// Entries by path. Recorded frames may have a size of many gigabytes. Code that has read a file therefore passes its
+/// entry on, and the file is read only once.
 using ManifestEntries = std::map<std::string, ManifestEntry>;
 /// Returns the entries of the existing files; reads each file. Errors: `io` with the path.
 [[nodiscard]] Result<ManifestEntries> manifest_entries(const std::filesystem::path& folder);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PNG files to which measures.json refers. They are stored in the folder pictures/ of a session.
+// PNG files to which measures.json refers. The files are stored in the folder pictures/ of a session.
 #pragma once
 
 #include <filesystem>
@@ -24,7 +24,7 @@ struct MeasurePicture {
 /// Replaces the base64 pictures in a record of measures_json() by file names and returns the pictures.
 [[nodiscard]] std::vector<MeasurePicture> take_pictures(Json& measures);
 
-/// Inverse of take_pictures(): replaces file names by the pictures in the session folder. Records of older versions
+/// Replaces file names by the pictures in the session folder (inverse of take_pictures()). Records of older versions
 /// contain the pictures and stay unchanged. A missing picture is removed from the record and a reason is added. Errors:
 /// `invalid_input` (name not made by take_pictures(), file unreadable or not a PNG).
 [[nodiscard]] Result<Json> with_pictures(Json measures, const std::filesystem::path& folder);

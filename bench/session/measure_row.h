@@ -17,9 +17,9 @@ namespace todbench {
 
 /// A measure in measures.json.
 struct MeasureRow {
-  std::string_view key;  ///< key of its part of the record
-  /// Adds the quantities of the measure, and the measure itself if a figure or a table shows it; no effect if it was
-  /// not taken.
+  std::string_view key;  ///< key of the measure in the record
+  /// Adds the quantities of the measure, and the measure itself if a figure or a table shows the measure. No effect if
+  /// the measure was not taken.
   void (*add)(MeasureLines& out, const CameraMeasures& measures);
   /// Describes the part of a measure that figures and tables show. The part is null if the measure was not taken. The
   /// reader reads the part if it is present and not null.

@@ -44,8 +44,8 @@ struct PlatePanels {
 /// All measures of one camera, and the reasons for missing measures.
 struct MeasureLines {
   std::vector<MeasureLine> lines;
-  // Results for figures and tables. After measure_lines() they are complete; after measures_from() they contain only
-  // the numbers that figures and tables show.
+  // Results for figures and tables. After measure_lines() the results are complete. After measures_from() they contain
+  // only the numbers that figures and tables show.
   std::optional<MtfMeasure> mtf{};
   std::optional<CtfMeasure> ctf{};
   std::optional<SourceSizeMeasure> source{};
@@ -64,7 +64,7 @@ struct MeasureLines {
 /// Returns the lines of all measures that were taken, their complete results, and the reasons for missing measures.
 [[nodiscard]] MeasureLines measure_lines(const CameraMeasures& measures);
 
-/// Returns the name, value and interval of each line. Use them as JudgementInput::measures.
+/// Returns the name, value and interval of each line. These are used as JudgementInput::measures.
 [[nodiscard]] std::vector<MeasuredQuantity> quantities_of(const MeasureLines& lines);
 
 /// Measures of a session: of the camera (or of the simulated sensor alone) and of the twin.

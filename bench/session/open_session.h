@@ -15,7 +15,7 @@ namespace todbench {
 
 /// State of the files of a session.
 enum class SessionCondition {
-  intact,   ///< all files are as the run wrote them, and there are no others
+  intact,   ///< all files are as the run wrote them, and no other files exist
   changed,  ///< files were changed, removed or added after the end of the session
   cut_off,  ///< no manifest and state running: the run is in progress or was cut off
 };
@@ -40,8 +40,8 @@ struct Opening {
   bool accept_cut_off = false;  ///< accepts runs that were cut off, which have no manifest
 };
 
-/// Checks a session with check_session() and reads it with read_session(). Errors: those of both, and `invalid_input`
-/// with the reason for a session that `opening` does not accept.
+/// Checks a session with check_session() and reads it with read_session(). Errors: those of both functions, and
+/// `invalid_input` with the reason for a session that `opening` does not accept.
 [[nodiscard]] Result<Session> open_session(const std::filesystem::path& folder, const Opening& opening);
 /// Succeeds if open_session() would accept the folder as intact. Call it before writing to a session.
 [[nodiscard]] Result<void> require_intact(const std::filesystem::path& folder);

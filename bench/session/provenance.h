@@ -19,7 +19,7 @@ namespace todbench {
 
 /// State of a session.
 enum class SessionState {
-  running,  ///< in progress, or cut off by a crash
+  running,  ///< in progress, or ended by a crash
   complete,
   interrupted,  ///< stopped on request or by an error; earlier trials are valid
 };
@@ -86,8 +86,8 @@ struct JudgedBy {
 /// Origin of a session that judged recorded frames again.
 struct OriginRecord {
   std::string session;          ///< folder of the recorded session
-  std::string manifest_sha256;  ///< digest of its manifest; empty: it has none
-  std::string signed_by;        ///< SHA-256 of the key of its valid signature; empty: not signed
+  std::string manifest_sha256;  ///< digest of the manifest of that session; empty: no manifest
+  std::string signed_by;        ///< SHA-256 of the key of the valid signature of that session; empty: not signed
   JudgedBy then, now;
   /// True if the session contains the recorded frames up to the interruption, followed by new frames of the camera.
   bool resumed = false;
@@ -116,14 +116,14 @@ struct Provenance {
   std::vector<ModuleRecord> modules{};  ///< modules after the camera or its twin; the observer last
   SensorPlan effects;                   ///< effects of the simulated curve
   std::optional<RunRecord> run;         ///< run that wrote trials.csv
-  /// Forecast for comparison with the times of `run`. Empty: not measured, a simulated scene, recorded frames, or an
-  /// early end.
+  /// Forecast to compare with the times of `run`. Empty: not measured, a simulated scene, recorded frames, or an early
+  /// end.
   std::optional<TimeForecast> forecast{};
   std::optional<RunRecord> twin_run;  ///< run that wrote trials_simulated.csv
   std::optional<CameraOpticsRecord> camera_optics{};
   /// The last self-test of this program on this computer; empty: none.
   std::optional<SelftestRecord> selftest{};
-  /// Origin of the frames; present if they come from another session.
+  /// Origin of the frames; present if the frames come from an earlier session.
   std::optional<OriginRecord> origin{};
   /// Limits of the acuity, and thresholds of an operator at the display; empty: no observer with an eye.
   std::optional<DisplayRecord> at_display{};
@@ -132,7 +132,7 @@ struct Provenance {
 /// Returns the number of parts between camera losses; 1: the camera was never lost.
 [[nodiscard]] std::size_t segments(const Provenance& provenance);
 /// Returns whether the run was not continuous: it ended early, or the camera was lost and came back. `state` shows
-/// whether all trials were made.
+/// whether the run made all trials.
 [[nodiscard]] bool was_interrupted(const Provenance& provenance);
 
 /// Returns the provenance with program, host, start time, seed and instruments of the plan; state running.

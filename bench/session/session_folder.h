@@ -111,11 +111,11 @@ struct Session {
   std::optional<CurveUncertainty> uncertainty;  ///< uncertainty of `curve`; empty if the plan has no budget
   std::optional<Verdict> verdict;               ///< stored verdict; empty in older or cut-off sessions
   std::optional<CostFrontier> cost;             ///< accuracy against cost, if measured for this session
-  /// Digest of the manifest that confirms these values (ManifestCheck); empty if none does.
+  /// Digest of the manifest that confirms these values (ManifestCheck); empty: no manifest confirms them.
   std::string manifest_sha256;
-  /// Files that differ from the files that the run wrote. They were read because the caller accepted changes.
+  /// Files that differ from the files that the run wrote. The files were read because the caller accepted changes.
   std::vector<std::string> accepted_changes;
-  bool cut_off = false;  ///< no manifest: the values are unconfirmed
+  bool cut_off = false;  ///< no manifest: the values are not confirmed
   /// Returns false for a run that was interrupted or cut off.
   [[nodiscard]] bool complete() const { return provenance.state == SessionState::complete; }
 };
@@ -125,7 +125,8 @@ struct Session {
 [[nodiscard]] Result<Session> read_session(const std::filesystem::path& folder);
 /// Returns the reason for an early end of the run; empty if the run was complete.
 [[nodiscard]] std::optional<std::string> ended_early(const Session& session);
-/// Returns the stored verdict. If no verdict is stored, judges the session now; the verdict states this.
+/// Returns the stored verdict. If no verdict is stored, the function judges the session now, and the verdict contains a
+/// remark about this.
 [[nodiscard]] Verdict verdict_of(const Session& session);
 /// Stores a verdict that was made later, and lists it in the manifest. A run that was cut off has no manifest and stays
 /// unchanged. Errors: `io` with the path.

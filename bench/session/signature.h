@@ -54,7 +54,7 @@ struct ReportRevision {
 struct SignatureCheck {
   SessionSignature signature;
   bool valid = false;
-  /// True if the signature was verified with the key in the folder. This does not prove who owns the key.
+  /// True if the signature was verified with the key in the folder. The verification does not prove who owns the key.
   bool own_key = true;
   std::string sentence{};  ///< reason if not valid
   /// Contents confirmed by valid signatures: "manifest.json", "signed_utc" and "revisions".
@@ -75,8 +75,8 @@ struct SignatureCheck {
                                                    const std::string& utc);
 /// Returns the path of a page of a revision: "revisions/report-2.html".
 [[nodiscard]] std::string revision_page(const ReportRevision& revision, std::string_view extension);
-/// Adds a revision to the list, with the digests of its pages, which must exist, and signs the list with the secret key
-/// of the session. Errors: `invalid_input` (no such key, or rejected by the program), `io` with the path.
+/// Adds a revision to the list, with the digests of its pages, and signs the list with the secret key of the session.
+/// The pages must exist. Errors: `invalid_input` (no such key, or rejected by the program), `io` with the path.
 [[nodiscard]] Result<void> keep_revision(const std::filesystem::path& folder, const ReportRevision& revision,
                                          const std::vector<std::string>& pages, const std::filesystem::path& secret_key,
                                          const std::stop_token& stop = {});

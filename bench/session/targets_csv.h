@@ -11,8 +11,8 @@
 
 namespace todbench {
 
-/// Writes presentations as they occur; append() passes each to the operating system before it returns. One thread at a
-/// time.
+/// Writes presentations as they occur. append() passes each presentation to the operating system before it returns. One
+/// thread at a time.
 class TargetsWriter {
  public:
   /// Creates the file with its header. Errors: `io` with the path.

@@ -13,7 +13,8 @@
 
 namespace todbench {
 
-/// Writes trials as they occur; append() passes each to the operating system before it returns. One thread at a time.
+/// Writes trials as they occur. append() passes each trial to the operating system before it returns. One thread at a
+/// time.
 class TrialsWriter {
  public:
   /// Creates the file with its header. Errors: `io` with the path.

@@ -10,7 +10,7 @@
 
 namespace todbench {
 
-/// Measures cost_frontier() for a plan. The choices of the planner are: the request of the plan (the chosen point), the
+/// Measures cost_frontier() for a plan. The planner has these choices: the request of the plan (the chosen point), the
 /// effects and accuracy for tolerances from 0.5 to 5 %, and the named levels with the effects of the plan. The trials
 /// repeat the measurement of the plan on its simulated sensor, including registration, contrast and psychometric fit,
 /// with 1, 2, 4, ... of its phases (for an adaptive schedule, of its presentations). Errors: those of

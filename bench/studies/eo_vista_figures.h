@@ -30,8 +30,7 @@ inline constexpr const char* human = "human-like-1";
                                                              const std::vector<ReproducedRange>& ranges,
                                                              const std::vector<ReproducedRange>& graded_ranges = {});
 
-/// Returns the thresholds. If a threshold has a value from graded answers, this value replaces the value from binary
-/// answers.
+/// Returns the thresholds. A value from graded answers, if there is one, replaces the value from binary answers.
 [[nodiscard]] std::vector<ReproducedThreshold> by_graded_answers(std::vector<ReproducedThreshold> thresholds);
 
 /// Ratio a / b of two acuities with its 95 % interval, for independent errors on the logarithmic scale.

@@ -29,7 +29,7 @@ struct IdentificationStudyTask {
   Atmosphere air{};
   /// Numerical accuracy of the simulation.
   Accuracy accuracy{};
-  /// Ranges of the experiment, at least two, increasing. They should enclose 75 % correct.
+  /// Ranges of the experiment, at least two, increasing. The ranges should enclose 75 % correct.
   std::vector<double> ranges_m;
   /// Pictures that the observer uses as templates.
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;
@@ -62,8 +62,8 @@ inline constexpr std::string_view no_r75 = "the ranges do not enclose 75 % corre
 struct SetCriterion {
   std::optional<double> value;
   Interval ci95;
-  /// Smallest and largest of three values of an observer with an eye: with its parameters as stated, and at both limits
-  /// of its open parameters (open_parameters.h). Empty if one of the three is missing. Not a confidence interval.
+  /// Smallest and largest of three values of an observer with an eye: one with the nominal parameters, and one at each
+  /// limit of its open parameters (open_parameters.h). Empty if one of the three is missing. Not a confidence interval.
   std::optional<std::pair<double, double>> spread{};
 };
 
@@ -98,9 +98,9 @@ struct IdentificationStudy {
 /// Returns the experiment of a study: views, ranges with their air. Errors: those of study_identification().
 [[nodiscard]] Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task);
 
-/// Returns the criteria of the set for a range with 75 % correct from another experiment, for example with people: M75
-/// and V50 on the TOD curve of the observer of the task, and the predicted range. `points` is empty. Errors: those of
-/// study_identification().
+/// Returns the criteria of the set for a range with 75 % correct from a different experiment, for example with people.
+/// The criteria are M75 and V50 on the TOD curve of the observer of the task, and the predicted range. `points` is
+/// empty. Errors: those of study_identification().
 [[nodiscard]] Result<IdentificationStudy> rate_found_range(const IdentificationStudyTask& task,
                                                            const SetCriterion& r75_m);
 

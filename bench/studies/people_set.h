@@ -31,9 +31,9 @@ using PngEncoder = std::function<Result<std::string>(const cv::Mat1b& picture)>;
 [[nodiscard]] Result<std::vector<ExperimentAnswer>> read_people_answers(const std::filesystem::path& file,
                                                                         const PersonExperiment& experiment);
 
-/// Answers of all people at one range. The interval is Wilson's for the effective number of independent answers that
-/// explains the scatter between people. For one person, or if the scatter is smaller than expected by chance, it is
-/// Wilson's interval for the number of answers.
+/// Answers of all people at one range. The interval is Wilson's interval for an effective number of independent
+/// answers. This number explains the scatter between people. For one person, or if the scatter is smaller than expected
+/// by chance, the number of answers replaces the effective number.
 struct PeopleShare {
   int shown = 0, right = 0;
   Interval ci95;
@@ -48,7 +48,7 @@ struct PeopleResult {
   /// Standard deviation of ln R75 between people, without the errors of the single values.
   std::optional<double> between_sd;
 };
-/// Evaluates the answers. Precondition: at least one person; every person answered every trial.
+/// Evaluates the answers. Precondition: there is at least one person, and every person answered every trial.
 [[nodiscard]] PeopleResult people_result(const PersonExperiment& experiment,
                                          const std::vector<std::vector<ExperimentAnswer>>& persons);
 

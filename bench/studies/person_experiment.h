@@ -57,9 +57,10 @@ class PersonExperiment {
   /// Shows every target `per_target` times at every range, each time from one of its aspects and with its own noise, in
   /// random order. Errors: those of experiment_of() and IdentificationFrames::of().
   [[nodiscard]] static Result<PersonExperiment> of_set(const IdentificationStudyTask& task, int per_target);
-  /// Shows bars by the criterion of the task: six contrasts, `per_contrast` times each, starting at twice the threshold
-  /// of an ideal observer, in steps of a factor of 1.6. For `bars_resolved` the factor is 2, and for every three frames
-  /// of a contrast there is one frame without bars on the same grey scale. Errors: those of BarFrames::of().
+  /// Shows bars by the criterion of the task: six contrasts, `per_contrast` times each. The contrasts start at twice
+  /// the threshold of an ideal observer, in steps of a factor of 1.6. For `bars_resolved` the factor is 2. For every
+  /// three frames of a contrast there is one frame without bars on the same grey scale. Errors: those of
+  /// BarFrames::of().
   [[nodiscard]] static Result<PersonExperiment> of_bars(const VirtualMrtdTask& task, int per_contrast);
 
   [[nodiscard]] PersonTask task() const { return task_; }
@@ -73,7 +74,7 @@ class PersonExperiment {
   /// Returns the shown picture in kelvin above the background; for two intervals both pictures, separated by a strip of
   /// background. Errors: those of stages after the camera.
   [[nodiscard]] Result<cv::Mat1f> picture_k(const PersonTrial& trial) const;
-  /// Returns the grey scale, which is the same for all trials of a condition, so that it does not depend on the answer.
+  /// Returns the grey scale. It is the same for all trials of a condition and therefore does not depend on the answer.
   [[nodiscard]] GreyScale grey(const PersonTrial& trial) const { return grey_[trial.condition]; }
   /// Returns sensor, set or axis, and seed, for the record.
   [[nodiscard]] const Json& description() const { return description_; }
@@ -108,14 +109,14 @@ struct PersonShare {
   Interval ci95;
 };
 
-/// Evaluation of the answers. The 75 % values are crossings as in Crossing75. Their intervals come from resampling the
-/// answers of every condition.
+/// Evaluation of the answers. The 75 % values are crossings as in Crossing75. The intervals of these values come from
+/// resampling the answers of every condition.
 struct PersonResult {
   std::vector<PersonShare> conditions;                   ///< share of correct answers, by condition
   std::vector<std::vector<std::vector<int>>> confusion;  ///< [condition][shown][answered]
   SetCriterion r75_m;                                    ///< range with 75 % correct, for `identify`
-  /// Bars: threshold of every frequency. For `bars_resolved` empty if the person reported bars in more than a quarter
-  /// of the frames without bars, because the threshold of a person who always answers yes is meaningless.
+  /// Bars: threshold of every frequency. For `bars_resolved`, empty if the person reported bars in more than a quarter
+  /// of the frames without bars. The threshold of a person who always answers yes is meaningless.
   std::vector<SetCriterion> thresholds_k;
   /// For `bars_resolved`: number of frames without bars at every frequency, and number of yes answers to them.
   std::vector<PersonShare> false_alarms;

@@ -10,10 +10,9 @@
 
 namespace todbench {
 
-/// Loads a scene with load_scene(), with support for TIFF and .npy pictures.
+/// Loads a scene with load_scene(); supports TIFF and .npy pictures.
 [[nodiscard]] Result<FieldScene> scene_with_pictures(std::string_view reference);
-/// Loads a target set with load_target_set(), with support for every recording with temperatures, and for masks in TIFF
-/// and .npy.
+/// Loads a target set with load_target_set(); supports every recording with temperatures, and masks in TIFF and .npy.
 [[nodiscard]] Result<TargetSet> target_set_with_pictures(std::string_view reference);
 
 }  // namespace todbench

@@ -36,7 +36,7 @@ struct RecordedNoise {
 };
 
 /// Returns the noise of a recording, computed in blocks of `block_frames` frames (at least 2). Incomplete blocks are
-/// ignored. `usable`: the pixels to use (TemporalNoise::usable); empty: the function determines the pixels. Errors:
+/// ignored. `usable`: the pixels to use (TemporalNoise::usable); empty: the function selects the pixels. Errors:
 /// `invalid_input` (fewer frames than a block, frames of different sizes, no noise).
 [[nodiscard]] Result<RecordedNoise> recorded_noise(std::span<const cv::Mat1f> frames, int block_frames,
                                                    const cv::Mat1b& usable = {});
@@ -47,7 +47,7 @@ struct RecordedNoise {
 /// Options of the study.
 struct RealNoiseOptions {
   std::vector<double> contrast_over_noise{1.6, 3.3, 8, 28};  ///< contrasts over the noise; 3.3 is 0.23 K at 0.07 K NETD
-  /// Noise of a whole frame divided by the noise of successive frames (TemporalNoise::whole_to_successive). It
+  /// Noise of a whole frame divided by the noise of successive frames (TemporalNoise::whole_to_successive). The ratio
   /// quantifies how noise that is correlated in time affects the observer.
   double whole_to_successive = 1;
   /// Noise windows per size, spread over the recording. All phases and orientations use the same windows.

@@ -29,7 +29,7 @@ struct ScenePicturesTask {
   SceneView view{};      ///< range and position of the scene
   SceneMotion motion{};  ///< motion of the picture across the detectors: the target moves, or the camera turns
   Accuracy accuracy{};
-  /// Stages after the camera. They receive as many frames of the same motion as their memory stores. Empty: none.
+  /// Stages after the camera. The stages receive as many frames of the same motion as their memory stores. Empty: none.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   EffectPlannerOptions effects{};  ///< options of the effect planner
   std::uint64_t seed = 1;
@@ -38,7 +38,7 @@ struct ScenePicturesTask {
 
 /// One stage. All stages of a task show the same field.
 struct SceneStage {
-  std::string name;         ///< name of its files: "1-scene"
+  std::string name;         ///< name of the files of this stage: "1-scene"
   std::string title, note;  ///< title and remark for people
   cv::Mat1f kelvin;         ///< equivalent kelvin above the background
   double pixels_per_pitch = 1;
@@ -51,7 +51,8 @@ struct AirDecision {
   std::string reason;
 };
 
-/// Returns whether an effect belongs to the air. Its decision is then listed with the decisions about the air.
+/// Returns whether an effect belongs to the air. The decision about such an effect is listed with the decisions about
+/// the air.
 [[nodiscard]] constexpr bool is_of_air(Effect effect) {
   return effect == Effect::turbulence || effect == Effect::image_dance;
 }
@@ -61,7 +62,7 @@ struct TurbulenceSeen {
   TurbulentPath path{};
   double r0_m = 0;            ///< coherence diameter, spherical wave (Fried 1966)
   double mtf_at_nyquist = 1;  ///< long exposure, at the Nyquist frequency of the samples
-  /// Standard deviation of the image motion between short exposures, per axis. The long exposure includes it.
+  /// Standard deviation of the image motion between short exposures, per axis. The long exposure includes this motion.
   double tilt_sd_mrad = 0, tilt_sd_pitch = 0;
 };
 
@@ -83,9 +84,9 @@ struct ScenePictures {
 };
 
 /// Renders the stages. Pictures 1 to 3 are finer than the detectors, 4 and 5 have one pixel per sample, and later
-/// pictures have eight pixels per sample and axis. The effects that are needed at the contrast of the target are
-/// simulated, or all effects if no size has a threshold at this contrast. Errors: `invalid_input` (a range beyond the
-/// table of the air), `not_identifiable` (no contrast after the stages), those of scene_signal_k() and of the stages.
+/// pictures have eight pixels per sample and axis. Simulates the effects that are needed at the contrast of the target,
+/// or all effects if no size has a threshold at this contrast. Errors: `invalid_input` (a range beyond the table of the
+/// air), `not_identifiable` (no contrast after the stages), those of scene_signal_k() and of the stages.
 [[nodiscard]] Result<ScenePictures> scene_pictures(const ScenePicturesTask& task);
 
 /// Returns a picture of 8 bits, black at low and white at high, enlarged by an integer factor until the longer side has

@@ -21,7 +21,7 @@ struct ProcessPool {
   std::function<void(std::size_t done)> on_progress{};  ///< any thread, one call at a time
 };
 /// Runs all tasks in `jobs` parallel processes, with one waiting thread for each. Returns the worst exit code. On a
-/// stop request it ends its children with SIGTERM, waits for them and returns 130.
+/// stop request the function ends its children with SIGTERM, waits for them and returns 130.
 [[nodiscard]] Result<int> run_pool(const ProcessPool& pool, std::stop_token stop);
 
 }  // namespace todbench

@@ -16,12 +16,12 @@ namespace todbench {
 /// Returns the path of a task's result: a folder for each thousand, "RESULTS/000/i000123-HASH.json".
 [[nodiscard]] std::filesystem::path result_file(const Sweep& sweep, const SweepTask& task);
 
-/// State of a task. The names of files and the content of locks determine it.
+/// State of a task. The names of files and the content of locks determine the state.
 enum class TaskState {
   missing,
   done,     ///< its result exists
   failed,   ///< "NAME.failed" contains the reason; a new run tries again
-  running,  ///< "NAME.lock" of a live process, or of another host within the last hours
+  running,  ///< "NAME.lock" of a live process, or of a different host within the last hours
   stale,    ///< a lock whose process has ended
   foreign,  ///< a result of the same index with a different hash, from a different sweep file
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Task list of a sweep as text for job schedulers. These functions do not submit it.
+// Task list of a sweep as text for job schedulers. These functions do not submit the list.
 #pragma once
 
 #include <array>

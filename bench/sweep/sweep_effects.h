@@ -21,15 +21,15 @@ struct EffectLevel {
 struct ParameterEffect {
   std::string key;
   std::vector<EffectLevel> levels{};
-  /// For a drawn parameter: response at both limits of its range, with all other parameters at their means. It is
-  /// computed on the plane fitted to all rows of a repeat, and averaged over the repeats. The joint least-squares fit
-  /// removes the linear effects of the other parameters from the noise.
+  /// For a drawn parameter: response at both limits of its range, with all other parameters at their means. The
+  /// response is computed on the plane fitted to all rows of a repeat, and averaged over the repeats. The joint
+  /// least-squares fit removes the linear effects of the other parameters from the noise.
   std::vector<EffectLevel> ends{};
   /// Shares of the variance of the response that are explained by the parameter alone, and by the parameter with all
-  /// its interactions. They are means over the repeats, with the interval of that mean. Full factorial: exact sums of
-  /// squares. Drawn sample: the correlation ratio over classes of equal count, corrected for chance; there is no total
-  /// index. Draws with total = true: the estimators of Saltelli et al. 2010 and Jansen 1999, with intervals over the
-  /// draws.
+  /// its interactions. Both shares are means over the repeats, with the intervals of these means. Full factorial: exact
+  /// sums of squares. Drawn sample: the correlation ratio over classes of equal count, corrected for chance; there is
+  /// no total index. Draws with total = true: the estimators of Saltelli et al. 2010 and Jansen 1999, with intervals
+  /// over the draws.
   std::optional<double> first_order{}, total{};
   Interval first_order_ci95{}, total_ci95{};
 };

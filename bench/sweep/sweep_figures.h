@@ -9,8 +9,8 @@
 namespace todbench {
 
 /// Draws one bar per parameter from its lowest to its highest mean response (for a drawn parameter at the limits of its
-/// range), the longest first, with the values at both ends of the bar. Errors: `not_identifiable` if no parameter has
-/// two values.
+/// range). The longest bar is the first. Each bar has the values at both ends. Errors: `not_identifiable` if no
+/// parameter has two values.
 [[nodiscard]] Result<Drawing> tornado(const ResponseEffects& effects, const std::string& id);
 
 /// Draws the mean response at each value with its interval. Errors: `invalid_input` for values that are not numbers.
@@ -26,14 +26,14 @@ struct ResponseGrid {
   std::size_t points = 0, least = 0;
 };
 /// Computes the grid of the two parameters of [grid] with the largest shares of the variance, each with two numbers or
-/// more. Without [grid], two drawn parameters are used, with means over equal squares. The number of squares (8 x 8 to
-/// 3 x 3) is the largest with at least eight draws in each square and a range of the means of at least eight times
-/// their largest standard error. Errors: `not_identifiable` (no such parameters, cells without a task, or too few
-/// draws).
+/// more. Without [grid], two drawn parameters are used, with means over equal squares. The number of squares is between
+/// 8 x 8 and 3 x 3. It is the largest number with at least eight draws in each square and a range of the means of at
+/// least eight times their largest standard error. Errors: `not_identifiable` (no such parameters, cells without a
+/// task, or too few draws).
 [[nodiscard]] Result<ResponseGrid> response_grid(const Sweep& sweep, const SweepTable& table,
                                                  const ResponseEffects& effects);
-/// Contour line of a bilinear surface through the grid at one height: straight segments from edge to edge of a cell
-/// (marching squares; a saddle is decided by the mean of its corners).
+/// Contour line of a bilinear surface through the grid at one height, as straight segments from edge to edge of a cell
+/// (marching squares). The mean of the corners decides a saddle.
 struct ContourStretch {
   Place from, to;
 };

@@ -54,13 +54,13 @@ struct SweepFile {
   std::vector<SweepRange> sample;
   std::size_t sample_count = 0;
   std::uint64_t sample_seed = 1;
-  /// Only for a Sobol sample. If true, every draw consists of two independent points A and B and, for each range, a
-  /// copy of A in which the parameter of this range has the value of B. With R ranges there are sample_count x (R + 2)
-  /// combinations. Total indices (Saltelli et al. 2010) are computed from them.
+  /// Only for a Sobol sample. If true, every draw consists of two independent points A and B, and a further point for
+  /// each range. This point is a copy of A in which the parameter of the range has the value of B. With R ranges there
+  /// are sample_count x (R + 2) combinations. Total indices (Saltelli et al. 2010) are computed from them.
   bool sample_total = false;
   std::size_t repeats = 1;
   std::vector<Constraint> where;
-  std::filesystem::path folder;   ///< folder of the file, to which its paths are relative
+  std::filesystem::path folder;   ///< folder of the file, to which the paths in the file are relative
   std::filesystem::path results;  ///< folder of the results
 };
 

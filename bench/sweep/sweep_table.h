@@ -12,8 +12,8 @@
 
 namespace todbench {
 
-/// One row for each task and contrast, in the order of the indices. The table contains no times and no host names, so
-/// that its bytes do not depend on how the sweep was run.
+/// One row for each task and contrast, in the order of the indices. The table contains no times and no host names. Its
+/// bytes therefore do not depend on the way in which the sweep was run.
 struct SweepTable {
   std::vector<std::string> columns;  ///< index, task, the parameters, repeat, seed, then the numbers of a point
   std::vector<Json> rows;            ///< each a list as long as the columns; numbers, texts or null

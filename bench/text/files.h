@@ -23,8 +23,8 @@ namespace todbench {
 /// Returns the SHA-256 of a file in lower-case hexadecimal; reads it in pieces. Errors: `io` (unreadable).
 [[nodiscard]] Result<std::string> sha256_of_file(const std::filesystem::path& file);
 
-/// Append-only file. Every write is checked and passed to the operating system immediately, so that a crash of the
-/// program loses no appended data. Move-only; one thread at a time.
+/// Append-only file. Every write is checked and passed to the operating system immediately. A crash of the program
+/// therefore loses no appended data. Move-only; one thread at a time.
 class AppendFile {
  public:
   /// Content of the file at the beginning: emptied, or continued.
@@ -32,7 +32,7 @@ class AppendFile {
   /// Creates the file, or continues it with Start::at_end. Errors: `io` with path and reason.
   [[nodiscard]] static Result<AppendFile> open(const std::filesystem::path& file, Start start);
 
-  /// Appends all of `content`; a partial write on a full disk is truncated. Errors: `io` with path and reason.
+  /// Appends all of `content`; truncates a partial write on a full disk. Errors: `io` with path and reason.
   [[nodiscard]] Result<void> append(std::string_view content);
   /// Waits until the data are on the disk.
   [[nodiscard]] Result<void> sync();

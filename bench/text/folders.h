@@ -19,7 +19,7 @@ namespace todbench {
 /// with the path.
 [[nodiscard]] Result<void> make_folder(const std::filesystem::path& folder);
 
-/// Exclusive claim on a folder. It is a lock of the operating system, so it always ends with the program.
+/// Exclusive claim on a folder. The claim is a lock of the operating system and therefore always ends with the program.
 class FolderClaim;
 /// Claims a folder until the last copy of the claim is destroyed. Writes no file into the folder. On file systems
 /// without locks the claim always succeeds. Errors: `invalid_input` (held by another program).

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Records in JSON, described once for both directions: a function names keys and members in the order of the object,
-// and the same function writes the object and reads it.
+// Records in JSON, described once for both directions. A function names keys and members in the order of the object;
+// the same function writes the object and reads it.
 //
 //   void level_fields(JsonFields& json, Level& level) {
 //     json.value("size_mrad", level.size);
@@ -31,7 +31,7 @@ namespace todbench {
 /// description.
 class JsonFields {
  public:
-  /// Describes a key that every record has. Mistakes in reading: missing key, other type. Mistake in writing: a number
+  /// Describes a key that every record has. Mistakes in reading: missing key, wrong type. Mistake in writing: a number
   /// that is not finite, because it would be read as a missing number. An optional number that is not finite becomes
   /// null.
   template <typename Value, typename... How>
@@ -72,7 +72,7 @@ class JsonFields {
     else if (!reader_)
       put(key, nullptr);
   }
-  /// Reading: creates the record if `key` has a value; otherwise empties it.
+  /// Creates the record if `key` has a value; otherwise empties the record. For reading only.
   template <typename Record>
   void begin(const std::string& key, std::optional<Record>& record) {
     if (reader_) record = has(key) ? std::optional<Record>(std::in_place) : std::nullopt;
@@ -88,9 +88,9 @@ class JsonFields {
     put(key, printed.written(path_of(key), value, how...));
   }
 
-  /// Returns whether the description reads. It may then set members that older records do not state.
+  /// Returns whether the description reads. The description may then set members that older records do not contain.
   [[nodiscard]] bool reading() const { return reader_ != nullptr; }
-  /// Reading: returns whether the key is present and not null. A missing key is not a mistake.
+  /// Returns whether the key is present and not null. For reading only. A missing key is not a mistake.
   [[nodiscard]] bool has(const std::string& key) const { return !reader_->at_if_there(key).is_null(); }
 
  private:

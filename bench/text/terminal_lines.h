@@ -14,8 +14,8 @@ namespace todbench {
 [[nodiscard]] std::size_t columns_of(std::string_view text);
 
 /// Breaks a line at blanks into lines of at most `columns`. Continuation lines are indented to the text after the last
-/// gap of at least two blanks in the first half of the columns. Without a gap, they are indented as the line. Longer
-/// words are not broken. A line that fits keeps its blanks.
+/// gap of at least two blanks in the first half of the columns. Without a gap, they have the indentation of the line.
+/// Longer words are not broken. A line that fits keeps its blanks.
 [[nodiscard]] std::vector<std::string> broken_line(std::string_view line, std::size_t columns);
 
 /// Returns a header, a rule and rows with aligned columns: numbers to the right, words to the left. Without `columns`,

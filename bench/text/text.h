@@ -21,9 +21,9 @@ namespace todbench {
 /// inf, overflow).
 [[nodiscard]] std::optional<double> parse_number(std::string_view text);
 
-/// Returns the name in `known` with the smallest edit distance to `name` (swapped neighbours count one), if it can be a
-/// typing error (at most a third of its letters, at least one; ties: the first). Otherwise returns the first name whose
-/// first or last word is `name`; empty if there is none.
+/// Returns the name in `known` with the smallest edit distance to `name` (a swap of neighbours counts one), if the
+/// difference can be a typing error: a distance of at most a third of the length of `name`, or 1. The first of several
+/// nearest names is used. Otherwise returns the first name whose first or last word is `name`; empty if there is none.
 [[nodiscard]] std::optional<std::string> nearest_name(std::string_view name, std::span<const std::string> known);
 /// Returns ", did you mean 'X'?" or an empty text.
 [[nodiscard]] std::string nearest_name_hint(std::string_view name, std::span<const std::string> known);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Remaining time of a phase of work, without the time in which the camera was away.
+// Remaining time of a phase of work, without the time during which the camera was lost.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@ class TimeLeft {
   void stand_still(Time now);
   /// Returns the remaining time in seconds; `share` of the work is done, 0 to 1. Empty if `share` is not above 0.
   [[nodiscard]] std::optional<double> progress(Time now, double share);
-  /// Returns whether a minute passed since the phase or the last line began, and then begins a new minute.
+  /// Returns whether a minute has passed since the start of the phase or the last line. If so, a new minute begins.
   [[nodiscard]] bool line_is_due(Time now);
 
  private:

@@ -9,8 +9,8 @@
 
 namespace todbench {
 
-/// Computation on its own thread. The destructor stops the computation and waits for its end, so that objects to which
-/// the computation refers may be destroyed afterwards.
+/// Computation on its own thread. The destructor stops the computation and waits for its end. Objects to which the
+/// computation refers may be destroyed afterwards.
 template <typename T>
 class BackgroundTask {
  public:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Simulated sensor that replaces the twin if the frames of the camera differ from it. It provides the psychometric
-// function for the fit of the camera and the response for its contrast. The twin itself does not change.
+// Simulated sensor that replaces the twin if the frames of the camera differ from it. The surrogate provides the
+// psychometric function for the fit of the camera and the response for the contrast of the camera. The twin itself does
+// not change.
 #pragma once
 
 #include <map>
@@ -33,8 +34,8 @@ class CameraSurrogate {
   [[nodiscard]] const std::map<std::string, double>& responses() const { return responses_; }
   /// Returns the inputs with the surrogate in place of the twin. Empty if the frames of the camera agree with the twin;
   /// the function of the twin then remains in use. Noise counts as different if the difference is significant in a t
-  /// test at 1 % and would change a threshold by more than 0.05 %: NETD by 5 %, rows, columns and fixed pattern by 3 %
-  /// of the variance of a pixel.
+  /// test at 1 % and would change a threshold by more than 0.05 %. These limits are 5 % for NETD, and 3 % of the
+  /// variance of a pixel for rows, columns and fixed pattern.
   [[nodiscard]] std::optional<ExperimentInputs> lent() const;
   /// Returns whether the pictures of the camera contradict the optical model of the twin for all its parameters, or
   /// whether no valid sensor has the estimated optics.

@@ -33,7 +33,7 @@ struct DirectResults {
 /// Writes estimates and spreads into the points of the curve.
 void keep_direct(const DirectResults& direct, double pitch_mrad, TodCurve& curve);
 
-/// Replaces the thresholds of the planner's analytic estimate (CuedEstimate) by direct estimates, because those
+/// Replaces the thresholds of the planner's analytic estimate (CuedEstimate) by direct estimates, because the analytic
 /// thresholds are up to 6 % too low if noise limits the acuity. The estimates have a standard error of 0.4 %, or the
 /// usual number of draws if 0.4 % needs too many draws. A contrast without an estimate keeps its threshold. Errors:
 /// `interrupted`.

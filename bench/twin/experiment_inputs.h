@@ -47,7 +47,7 @@ struct ExperimentInputs {
 /// warning. With modules, every effect is simulated without the planner.
 [[nodiscard]] Result<ExperimentInputs> experiment_inputs(const LoadedPlan& loaded, EffectPlanner& planner);
 
-/// Returns the transmittance of the stated air in the band of the sensor; empty if the plan states none, and for a
+/// Returns the transmittance of the stated air in the band of the sensor. Empty if the plan states no air, and for a
 /// simulated scene, which has no air. Errors: those of bench_transmittance().
 [[nodiscard]] Result<std::optional<double>> stated_air(const Plan& plan, const SensorSpec& sensor);
 
@@ -60,7 +60,8 @@ void take_answers(MeasurementOptions& options, const Plan& plan, const Experimen
 /// Checks that all sizes fit into the picture and keep their distance from neighbours. Errors: `invalid_input` with up
 /// to three sizes that do not fit. Call it before the first calculation or movement.
 [[nodiscard]] Result<void> check_measured_geometry(const Plan& plan, const ExperimentInputs& inputs, cv::Size picture);
-/// Checks the same for the picture of the simulated sensor, and that it fits into the memory of this machine.
+/// Makes the same checks for the picture of the simulated sensor, and checks that this picture fits into the memory of
+/// this machine.
 [[nodiscard]] Result<void> check_simulated_geometry(const Plan& plan, const ExperimentInputs& inputs);
 
 }  // namespace todbench

@@ -40,7 +40,7 @@ using ModuleLine = std::function<void(std::string_view line)>;
 void put_stages_behind(OpenedBench& bench, std::vector<std::unique_ptr<ChainStage>> stages);
 
 /// Stores the noise of the run in counts and its correlation in every point. With stages after the camera, the stored
-/// value is the lower of two: the noise of the camera's pictures and the noise of the judged pictures at this contrast.
+/// value is the lower of the noise of the camera's pictures and the noise of the judged pictures at this contrast.
 void keep_noise(const MeasurementResult& result, TodCurve& curve);
 
 /// Returns the module that replaces the templates of the observer; null without one.

@@ -20,8 +20,9 @@ namespace todbench {
 [[nodiscard]] Result<ContrastSurface> contrast_surface(const Plan& plan, const ExperimentInputs& inputs,
                                                        std::stop_token stop);
 
-/// Returns the answers converted to their set contrasts: contrast c in place of c', size S exp(g(c) - g(c')), g the ln
-/// S75 of the surface. The set contrast is the contrast that the camera observes through the stated air.
+/// Returns the answers converted to their set contrasts: contrast c replaces c', and the size is S exp(g(c) - g(c')),
+/// where g is the ln S75 of the surface. The set contrast is the contrast that the camera observes through the stated
+/// air.
 [[nodiscard]] std::vector<Trial> at_set_contrasts(std::span<const Trial> trials, const ContrastSurface& surface,
                                                   double air_transmittance);
 
@@ -37,12 +38,12 @@ struct RampOutcome {
 [[nodiscard]] Result<RampOutcome> take_ramp(TodCurve& curve, const MeasurementResult& run,
                                             const ContrastSurface& surface, const Plan& plan);
 
-/// Returns the change of ln S75 per unit of ln contrast for an error of the contrast that small and large triangles do
-/// not share: the slope of the curve, at least 0.2. The minimum accounts for the internal noise that the observer
-/// draws, which this error changes too.
+/// Returns the change of ln S75 per unit of ln contrast, for an error of the contrast that small and large triangles do
+/// not share. This is the slope of the curve, at least 0.2. The minimum accounts for the internal noise of the
+/// observer, which this error also changes.
 [[nodiscard]] double sensitivity_to_lag(const ContrastSurface& surface, double delta_t_k);
 
-/// Numbers of contrasts of a ramp that were shown, and that were skipped because of a correction or another wait.
+/// Numbers of contrasts of a ramp: shown contrasts, and contrasts skipped because of a correction or another wait.
 struct LostContrasts {
   int shown = 0, lost = 0;
 };

@@ -27,7 +27,7 @@ namespace todbench {
 struct PairedCamera {
   const TodCurve& curve;  ///< fitted with the functions of the twin
   std::span<const Trial> trials;
-  std::span<const SetUpRecord> set_ups;  ///< positions of its plates
+  std::span<const SetUpRecord> set_ups;  ///< positions of the plates
   /// Fit with the functions of the twin, if `curve` is fitted with the functions of the camera's surrogate. Null:
   /// `curve` is fitted with the functions of the twin.
   const TodCurve* by_twin = nullptr;
@@ -59,8 +59,8 @@ struct Pairs {
   Comparison ratios;  ///< only contrast, margin and paired ratios of its points are set
   PairedOutcome said;
 };
-/// Computes the pairs on its own thread while the physical measures of the camera and the trials of the twin are made;
-/// null if the plan requests none. `camera_of` is called on that thread and may wait for its curve. The plan, the
+/// Computes the pairs on its own thread while the physical measures of the camera and the trials of the twin are made.
+/// Null if the plan requests no pairs. `camera_of` is called on that thread and may wait for its curve. The plan, the
 /// inputs and the objects that `camera_of` refers to must outlive the task.
 [[nodiscard]] std::unique_ptr<BackgroundTask<Pairs>> pairs_in_background(
     std::function<PairedCamera(std::stop_token)> camera_of, const Plan& plan, const ExperimentInputs& inputs);

@@ -26,8 +26,8 @@ namespace todbench {
 
 /// Draws per size of the functions: maximum (unless the accuracy needs more) and minimum.
 inline constexpr int twin_shape_draws = 4000, least_twin_shape_draws = 1000;
-/// Returns the draws for which the error of a function is a quarter of the error of the answers, `se_ln_threshold`.
-/// This widens an interval by 3 %. Empty `se_ln_threshold`: unknown.
+/// Returns the draws for which the error of a function is a quarter of the error of the answers, `se_ln_threshold`. The
+/// error of the function then widens an interval by 3 %. Empty `se_ln_threshold`: unknown.
 [[nodiscard]] int draws_of_twin_shape(std::optional<double> se_ln_threshold, const Accuracy& accuracy);
 
 /// Computes functions of the simulated sensor at the set contrasts of a plan, to fit answers while they arrive. The
@@ -62,8 +62,8 @@ struct TwinShapesOutcome {
                                                 const ExperimentInputs& inputs, const FitOptions& fit,
                                                 const DirectEstimateOptions& options, const TodCurve* known = nullptr);
 
-/// Refits graded points without a function of the twin from the binary answers of the same trials, because the error of
-/// a Weibull function exceeds the interval of graded answers. TodPoint::answers is then binary.
+/// Refits graded points without a function of the twin from the binary answers of the same trials. The reason is that
+/// the error of a Weibull function exceeds the interval of graded answers. TodPoint::answers is then binary.
 void fit_right_and_wrong(TodCurve& curve, std::span<const Trial> trials, const FitOptions& fit);
 
 /// Compares the directions of the triangles at the contrasts that were fitted with the function of the twin.

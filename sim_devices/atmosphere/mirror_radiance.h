@@ -7,7 +7,7 @@
 namespace todbench {
 
 /// Returns the temperature (K) that a camera reports for a black body of `source_k` seen via mirrors of temperature
-/// `mirrors_k`. It is the temperature of a black body with the band radiance transmission L(source) + (1 -
+/// `mirrors_k`. This is the temperature of a black body with the band radiance transmission L(source) + (1 -
 /// transmission) L(mirrors). Precondition: temperatures above 0 K, transmission above 0 and at most 1.
 [[nodiscard]] inline double seen_behind_mirrors_k(const SpectralBand& band, double transmission, double mirrors_k,
                                                   double source_k) {

@@ -24,8 +24,9 @@ struct RadiativeScene {
 /// W/(m2 sr). At the camera the difference is multiplied by the transmittance tau. Path radiance and reflections are
 /// equal for target and background and cancel.
 [[nodiscard]] double radiance_contrast(const SpectralBand& band, const RadiativeScene& scene);
-/// Converts a radiance contrast to kelvin: divides the contrast by dB/dT at `calibration_k`. This is the temperature
-/// for which the NETD of the camera is stated. The conversion is linear, so air multiplies the result by tau.
+/// Converts a radiance contrast to kelvin: divides the contrast by dB/dT at `calibration_k`. `calibration_k` is the
+/// temperature for which the NETD of the camera is stated. The conversion is linear, so air multiplies the result by
+/// tau.
 [[nodiscard]] double equivalent_contrast_k(const SpectralBand& band, double radiance_contrast_w_m2_sr,
                                            double calibration_k);
 

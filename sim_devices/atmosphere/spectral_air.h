@@ -35,7 +35,7 @@ struct Tape7Run {
 /// run does not cover the band.
 [[nodiscard]] Result<double> band_transmittance(const Tape7Run& run, const SpectralBand& band, double temperature_k);
 /// Returns the air of several runs as a table over their ranges. A single run is scaled by the law of Beer and Lambert
-/// at each wavenumber and tabulated from 1/1000 of its range to its range; this treats lines narrower than the
+/// at each wavenumber and tabulated from 1/1000 of its range to its range. This scaling treats lines narrower than the
 /// resolution as grey. Errors: those of band_transmittance().
 [[nodiscard]] Result<Transmittance> air_of_tape7(std::span<const Tape7Run> runs, const SpectralBand& band,
                                                  double temperature_k);

@@ -14,7 +14,7 @@ struct TurbulentPath {
 /// Returns Fried's coherence diameter for a plane wave: (0.423 k^2 Cn2 L)^(-3/5), in metres.
 [[nodiscard]] double fried_plane_m(const TurbulentPath& path);
 /// Returns the coherence diameter in metres for a spherical wave from the target, with the weight (z / L)^(5/3), z from
-/// the target. It is (8/3)^(3/5) = 1.80 times the diameter for the plane wave.
+/// the target. The result is (8/3)^(3/5) = 1.80 times the diameter for the plane wave.
 [[nodiscard]] double fried_spherical_m(const TurbulentPath& path);
 
 /// Returns 3.44 (lambda nu / r0)^(5/3), the exponent of long_exposure_mtf(), with the spherical r0 (Fried 1966).

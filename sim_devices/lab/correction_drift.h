@@ -9,7 +9,8 @@
 
 namespace todbench {
 
-/// Drift as a function of time t: rate * t, or rate * T * (1 - exp(-t / T)). The rate is that just after a correction.
+/// Drift as a function of time t: rate * t, or rate * T * (1 - exp(-t / T)). `rate` is the drift rate just after a
+/// correction.
 struct CorrectionDrift {
   double level_k_per_min = 0;    ///< drift of the level of the whole picture
   double pattern_k_per_min = 0;  ///< drift of the standard deviation over the pixels, which are normally distributed

@@ -8,7 +8,7 @@
 
 namespace todbench {
 
-/// Returns the sensor with the counts that this model sends when it is set up for measuring: 0.04 K in 14 bits, or 0.01
+/// Returns the sensor with the counts that this model sends with settings for measurements: 0.04 K in 14 bits, or 0.01
 /// K in 16. The sensor is unchanged for a model that sends raw counts.
 [[nodiscard]] SensorSpec with_counts_of(CameraModel model, SensorSpec sensor);
 

@@ -43,7 +43,7 @@ struct LaboratoryOptions {
   double mirror_transmission = 1, mirror_temperature_k = 295;
   double latency_s = 0;  ///< time from the exposure of a frame to its time stamp, in addition to the camera's latency
   BlackBodyOptions black_body;
-  PlateStageOptions stage;  ///< its plates are set from `plates`
+  PlateStageOptions stage;  ///< the plates of the stage are set from `plates`
   /// Upright monitor in front of the camera instead of black body and plate. The instruments run without effect.
   std::optional<Monitor> monitor{};
   /// Returns the counts that a faulty camera sends for an exposure of `scene`. Called on the camera's thread in the

@@ -16,8 +16,8 @@ namespace todbench {
 
 /// Monitor with its present picture.
 struct Monitor {
-  /// Distance between the centres of pixels. Each pixel is a lit square of this size, which must not exceed a sample of
-  /// the camera.
+  /// Distance between the centres of pixels. Each pixel is a lit square of this size. The size must not exceed a sample
+  /// of the camera.
   double pixel_mm = 0.25;
   double span_k = 20;  ///< contrast between white and black for the camera; > 0
   double gamma = 1;    ///< the light of a level from 0 to 1 is level^gamma; > 0

@@ -10,9 +10,9 @@
 
 namespace todbench {
 
-/// Properties of a module that fulfils the contract. No value of these properties violates the contract.
+/// Properties of a module that fulfils the contract. The contract allows any values of these properties.
 struct ModuleReport {
-  std::vector<cv::Size> shapes;  ///< sizes of the pictures that it processed
+  std::vector<cv::Size> shapes;  ///< sizes of the pictures that the module processed
   bool network_cut = false;      ///< the module could not reach any other computer
   double latency_ms = 0;         ///< median of an exchange of 320 x 240 numbers
   bool linear = false;           ///< linearity_deviation below 1e-4

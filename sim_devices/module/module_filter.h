@@ -5,9 +5,9 @@
 namespace todbench {
 
 /// Returns the descriptor of a file with a seccomp filter for `bwrap --seccomp`. The filter forbids sockets of every
-/// family but IPv4, IPv6 and netlink, because other families (UNIX, VSOCK) are not limited to the module's own network;
-/// pairs of sockets are allowed. The caller closes the file. Returns -1 if there is no filter for this system or
-/// processor.
+/// family except IPv4, IPv6 and netlink, because other families (UNIX, VSOCK) are not limited to the module's own
+/// network. Pairs of sockets are allowed. The caller closes the file. Returns -1 if there is no filter for this system
+/// or processor.
 [[nodiscard]] int module_filter();
 
 }  // namespace todbench

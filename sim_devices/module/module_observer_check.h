@@ -16,18 +16,18 @@ struct JudgedSize {
   int asked = 0, right = 0;  ///< decisions, and correct decisions
 };
 
-/// Properties of an observer program that fulfils the contract. No value of these properties violates the contract.
+/// Properties of an observer program that fulfils the contract. The contract allows any values of these properties.
 struct ObserverModuleReport {
   std::vector<JudgedSize> sizes;
   bool network_cut = false;  ///< the program could not reach any other computer
   double latency_ms = 0;     ///< median of twenty patches of a target of 5 samples
-  /// Another process that received the patches in the opposite order returned different scores.
+  /// A second process that received the patches in the opposite order returned different scores.
   bool order_matters = false;
 };
 
-/// Starts the program several times and sends it patches of targets without sensor noise: every alternative at nine
-/// positions within a sample, with the internal noise of `spec`. Errors: those of the module, and `integrity` if two
-/// processes score the same patches in the same order differently.
+/// Starts the program several times and sends it patches of targets without sensor noise. The patches show every
+/// alternative at nine positions within a sample, with the internal noise of `spec`. Errors: those of the module, and
+/// `integrity` if two processes score the same patches in the same order differently.
 [[nodiscard]] Result<ObserverModuleReport> check_observer(const TemplateObserverSpec& spec,
                                                           const Alternatives& alternatives, const ModulePlan& module);
 

@@ -23,7 +23,7 @@ enum class ModuleNetwork {
   cut,  ///< own network and message queues, no other sockets (bubblewrap); same as `ours` if bubblewrap cannot run
   ours,
 };
-/// Returns whether a network can be cut here: bubblewrap is installed and works. Tested once.
+/// Returns whether a network can be cut here: bubblewrap is installed and works. The test is made once.
 [[nodiscard]] bool can_cut_network();
 
 /// Command and limits of a module.
@@ -34,7 +34,7 @@ struct ModuleOptions {
   std::chrono::milliseconds limit{5000};
   std::size_t memory_limit_mib = 0;  ///< limit of address space for each process that the module starts; 0: no limit
   ModuleNetwork network = ModuleNetwork::cut;
-  std::function<void(std::string_view line)> on_error_line{};  ///< receives every line of its standard error
+  std::function<void(std::string_view line)> on_error_line{};  ///< receives every line of the module's standard error
 };
 
 /// Returns the first line (at most 256 bytes) that the command writes to its standard output or error within `limit`.
@@ -43,8 +43,8 @@ struct ModuleOptions {
 
 /// Running module: one .npy array is written to its standard input, and one array of the same shape is read from its
 /// standard output. The module has its own process group, which ends with the object. Error messages contain the last
-/// line of its standard error. After an error the module cannot be used any more. The calling program must ignore
-/// SIGPIPE. Move-only; one thread at a time.
+/// line of the module's standard error. After an error the module cannot be used any more. The calling program must
+/// ignore SIGPIPE. Move-only; one thread at a time.
 class ModuleProcess {
  public:
   /// Starts the process. Errors: `internal` if no process can be created. A command that does not exist fails in the
@@ -77,7 +77,7 @@ class ModuleProcess {
   ModuleOptions options_;
   pid_t process_ = -1;
   std::optional<int> exit_code_;
-  Descriptor in_, out_, err_;  ///< our ends of its standard streams
+  Descriptor in_, out_, err_;  ///< this program's ends of the standard streams of the module
   std::string to_write_, read_, errors_, error_line_;
   std::vector<char> buffer_ = std::vector<char>(1 << 20);  ///< buffer for reading
 };

@@ -31,8 +31,8 @@ class ChainStage {
   [[nodiscard]] virtual int samples_per_pixel() const { return 1; }
   /// Returns the position of sample (0, 0) of the last result, in samples of the picture.
   [[nodiscard]] virtual cv::Point2d first_px() const { return {0, 0}; }
-  /// Returns the displacement that the stage assumes for the last picture, in its samples; empty if it assumes no
-  /// displacement.
+  /// Returns the displacement that the stage assumes for the last picture, in samples of this picture; empty if the
+  /// stage assumes no displacement.
   [[nodiscard]] virtual std::optional<cv::Point2d> believed_px() const { return {}; }
 };
 
@@ -61,11 +61,11 @@ class ChainStage {
 struct ModuleStageOptions {
   ModuleOptions process{};
   int restart_frames = 0;  ///< pictures after which a new process is started; 0: never
-  int settle_frames = 0;   ///< its memory_frames()
+  int settle_frames = 0;   ///< result of memory_frames() of the stage
   /// Receives every line that the program writes to standard error.
   std::function<void(std::string_view line)> on_error_line{};
 };
-/// Returns a program of the user as a stage. It is started with the first picture.
+/// Returns a program of the user as a stage. The program starts with the first picture.
 [[nodiscard]] std::unique_ptr<ChainStage> module_stage(ModuleStageOptions options);
 
 }  // namespace todbench

@@ -19,11 +19,11 @@ struct CameraHalo {
   double sigma_px = 0;  ///< width that fits the pictures best
 };
 
-/// Estimates a halo from several set-ups: the brightness of the plate between the triangles, minus the tail of
-/// diffraction, is compared with the brightness that normal halos of 3 to 22 pixels (sigma) produce. The common part of
-/// all set-ups (fixed pattern, uneven lens or background) and a plane of every picture are subtracted, so that only
-/// light that moves with the triangles has an effect. A plate that is warm beside its openings cannot be distinguished
-/// from a halo.
+/// Estimates a halo from several set-ups. The fit compares the brightness of the plate between the triangles, minus the
+/// tail of diffraction, with the brightness that normal halos of 3 to 22 pixels (sigma) produce. The fit subtracts the
+/// common part of all set-ups (fixed pattern, uneven lens or background) and a plane of every picture. Only light that
+/// moves with the triangles then has an effect. A plate that is warm beside its openings cannot be distinguished from a
+/// halo.
 ///
 /// Pixels within 4 detector pitches of a triangle are not used; CameraOpticsFit evaluates them. The standard error is
 /// the largest of three estimates, clustered by blocks of 16 x 16 pixels, by rows and by columns of these blocks.
@@ -36,8 +36,8 @@ class CameraHaloFit {
   void add(const OpticsPicture& picture, double delta_t_k);
 
   /// Returns the halo. `f_number_ratio`: f-number of the camera divided by the twin's f-number (CameraOptics), for the
-  /// tail of diffraction. Empty if the halo is below half a per cent or below five standard errors (white noise exceeds
-  /// these limits by chance in one of a million sessions), or with fewer than two different set-ups.
+  /// tail of diffraction. Empty if the halo is below half a per cent or below five standard errors, or with fewer than
+  /// two different set-ups. White noise exceeds these limits by chance in one of a million sessions.
   [[nodiscard]] std::optional<CameraHalo> result(double f_number_ratio) const;
 
  private:

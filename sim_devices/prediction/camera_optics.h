@@ -31,7 +31,7 @@ struct CameraOptics {
   /// Chi-square at the optics of the sensor file minus its minimum. For a camera equal to the sensor file it has two
   /// degrees of freedom.
   double twin_statistic = 0;
-  double chi2 = 0;  ///< residuals over the noise of the plate around them, per degree of freedom
+  double chi2 = 0;  ///< residuals divided by the noise of the plate around them, per degree of freedom
   double chi2_limit = 1;
   double degrees_of_freedom = 0;
   double noise_k = 0;          ///< noise of a pixel of the average, measured on the plate between the triangles
@@ -45,17 +45,17 @@ struct CameraOptics {
   [[nodiscard]] bool differs(double probability) const;
 };
 
-/// Joint least squares over all pictures: aberration (Gaussian sigma >= 0) and f-number ratio (0.45 to 2.2) of the
-/// camera; amplitude, background plane and shift of every large triangle. The model is the optics and the detector of
-/// the twin at the sampling of the camera. It uses pixels inside a triangle and up to 3 px outside. Pixels with
-/// residuals above 8 standard deviations are left out if they are few.
+/// Joint least squares over all pictures. The parameters of the camera are aberration (Gaussian sigma >= 0) and
+/// f-number ratio (0.45 to 2.2). The parameters of every large triangle are amplitude, background plane and shift. The
+/// model is the optics and the detector of the twin at the sampling of the camera. The fit uses pixels inside a
+/// triangle and up to 3 px outside. Pixels with residuals above 8 standard deviations are left out if they are few.
 ///
 /// The noise is measured on the plate between the triangles and includes fixed pattern and rounding. chi2_limit is 1
 /// plus four standard deviations, from the scatter of that noise over blocks of the plate. Errors of the renderer count
 /// as noise: 1e-4 of the contrast, twice the residual of pictures without noise.
 ///
-/// For every picture, chi-square is approximated by a parabola in the two common parameters. This takes a tenth of a
-/// second per picture. Not thread-safe.
+/// For every picture, chi-square is approximated by a parabola in the two common parameters. The calculation takes a
+/// tenth of a second per picture. Not thread-safe.
 class CameraOpticsFit {
  public:
   /// `samples_per_pitch`: of the camera. `wavelengths`: as in Accuracy, 16 for a real camera. Precondition:

@@ -41,7 +41,7 @@ struct PictureAnswers {
 /// Answers of one observer.
 struct CameraTrials {
   PictureAnswers still;           ///< first frame of each presentation
-  PictureAnswers super_resolved;  ///< all its frames, registered and averaged on a grid of half the pitch
+  PictureAnswers super_resolved;  ///< all frames, registered and averaged on a grid of half the pitch
 };
 
 /// Answers of the observers (one entry each) and statistics of the registration.

@@ -22,7 +22,7 @@ namespace todbench {
 struct ThresholdEstimate {
   double delta_t_k = 0;
   double s75_pitch = 0;
-  std::optional<double> standard_error_pitch{};  ///< as the estimate states it
+  std::optional<double> standard_error_pitch{};  ///< as reported by the estimate
 };
 
 /// One way of computing the thresholds, with its time and its error. The computing time is the time of one thread on an
@@ -33,7 +33,7 @@ struct CostPoint {
   bool paired = false;  ///< same random numbers as its reference: the error comes from the setting only
   std::optional<double> wall_s{};         ///< computing time; if not measured, this and the next two are empty
   std::optional<double> error_percent{};  ///< of the 75 % acuity against the reference; the largest over contrasts
-  std::optional<double> standard_error_percent{};  ///< stated by the estimate; the largest over contrasts
+  std::optional<double> standard_error_percent{};  ///< reported by the estimate; the largest over contrasts
   std::string not_measured{};                      ///< reason, a clause; empty if measured
   bool chosen = false;                             ///< selected by the plan
   /// Among points that are not paired: no measured point is both faster and more accurate, standard error included.
@@ -100,12 +100,13 @@ struct CostListener {
 /// setting is varied at a time; the others keep the reference value.
 ///
 /// The error of wavelengths, phases, wrap and band is relative to the reference level with the same number of draws and
-/// the same random numbers, so it comes from the setting only. The error of draws, trials, tolerance and planner is
-/// relative to the whole reference. It contains the variation of their random numbers, so their standard error is
-/// stated, too. Computing times are the shorter of two runs if there is time.
+/// the same random numbers. This error therefore comes from the setting only. The error of draws, trials, tolerance and
+/// planner is relative to the whole reference. This error contains the variation of their random numbers; their
+/// standard error is therefore reported, too. Computing times are the shorter of two runs if there is time.
 ///
-/// The time budget is never exceeded. The reference uses at most a third of it, if necessary with fewer draws and a
-/// note. A point that does not fit is left unmeasured with a reason. The planner's chosen point comes first.
+/// The time budget is never exceeded. The reference uses at most a third of the budget. If necessary it uses fewer
+/// draws and adds a note. A point that does not fit into the budget is left unmeasured, with a reason. The planner's
+/// chosen point comes first.
 ///
 /// Errors: `invalid_input` (the budget is too short for the reference), `interrupted`.
 [[nodiscard]] Result<CostFrontier> cost_frontier(const CostTask& task, const CostListener& listener,

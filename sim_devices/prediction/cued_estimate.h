@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 75 % size for an observer that knows the position of the target: analytic, without noise draws. It is used to bracket
-// sizes and to plan effects. Reported numbers come from the searching observer.
+// 75 % size for an observer that knows the position of the target: analytic, without noise draws. This estimate is used
+// to bracket sizes and to plan effects. Reported numbers come from the searching observer.
 #pragma once
 
 #include <map>
@@ -23,8 +23,8 @@ class CuedEstimate {
   /// `observer` must outlive this object.
   CuedEstimate(const SensorSpec& sensor, const SensorPlan& plan, TemplateObserver& observer, SceneMotion motion = {});
 
-  /// Sets the contrast at which an observer with an eye sees the target: the noise of the eye, which depends on the
-  /// size, is added to the noise `q` in all later results. Has no effect for observers without an eye.
+  /// Sets the contrast at which an observer with an eye sees the target. All later results add the noise of the eye,
+  /// which depends on the size, to the noise `q`. Has no effect for observers without an eye.
   void show(double contrast_k) { contrast_k_ = contrast_k; }
   /// Returns the 75 % size in pitches. `q` is the noise per sample over the contrast, internal noise included. Errors:
   /// `invalid_input` if no size from 0.2 to 40 pitches reaches 75 % correct, or if even the smallest size exceeds 75 %.

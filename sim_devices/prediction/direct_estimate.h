@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 75 % size of a simulated sensor without trials and without a psychometric form: interpolated proportion correct of
-// the searching observer, averaged over the phases.
+// 75 % size of a simulated sensor without trials and without a psychometric form. It is interpolated from the
+// proportion correct of the searching observer, averaged over the phases.
 #pragma once
 
 #include <map>
@@ -36,8 +36,8 @@ struct DirectEstimateOptions {
   Accuracy accuracy;
   std::uint64_t seed = 1;
   ShownOrientations orientations = ShownOrientations::as_needed;  ///< orientations of the triangles
-  /// Temperature of the surround. It determines the position of the surround within a count and within the range of
-  /// counts. Empty: scene_temperature_k of the sensor.
+  /// Temperature of the surround. The temperature determines the position of the surround within a count and within the
+  /// range of counts. Empty: scene_temperature_k of the sensor.
   std::optional<double> background_k{};
   /// True contrast of the scene for each contrast that the camera reported. Used only if counts are too coarse or too
   /// few. A contrast without an entry is the true contrast; its reading is then the expected reading.
@@ -46,12 +46,12 @@ struct DirectEstimateOptions {
 };
 
 /// Returns one point per contrast (kelvin, > 0). Noise is drawn once per size and shared by phases and contrasts. If a
-/// count exceeds the noise (rounds_coarsely()), or if the contrast reaches the lowest or highest count, the counts of
-/// every pixel are simulated, with one projection for each draw and phase. This takes up to sixteen times as long. If
-/// the accuracy requires a standard error, draws are added until it is met. Errors: `invalid_input` (the camera's
-/// reading of a contrast is 0; no size between 0.2 and 40 pitches brackets 75 %, so the contrast has no threshold; the
-/// required standard error needs more draws than Accuracy::max_noise_draws; the message states the reachable standard
-/// error).
+/// count exceeds the noise (rounds_coarsely()), or if the contrast reaches the lowest or highest count, the function
+/// simulates the counts of every pixel, with one projection for each draw and phase. This simulation takes up to
+/// sixteen times as long. If the accuracy requires a standard error, draws are added until it is met. Errors:
+/// `invalid_input` (the camera's reading of a contrast is 0; no size between 0.2 and 40 pitches brackets 75 %, so the
+/// contrast has no threshold; the required standard error needs more draws than Accuracy::max_noise_draws; the message
+/// states the reachable standard error).
 [[nodiscard]] Result<std::vector<DirectPoint>> direct_estimate(const SensorSpec& spec, const SensorPlan& plan,
                                                                TemplateObserver& observer,
                                                                const std::vector<double>& delta_t_k,

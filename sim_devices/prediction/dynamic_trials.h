@@ -26,9 +26,9 @@ struct DynamicTrialOptions {
   int frames = 8;                     ///< frames of a pass, at least 1
   Accuracy accuracy;
   std::uint64_t seed = 1;
-  /// Stages after the camera, created for every pass; empty: none. Before the first frame of a pass they receive as
-  /// many frames of the same motion as they store. Their lag is not removed. Contrast and noise are measured after
-  /// them, with the plate at rest.
+  /// Stages after the camera, created for every pass; empty: none. Before the first frame of a pass, the stages receive
+  /// as many frames of the same motion as they store. The lag of the stages is not removed. Contrast and noise are
+  /// measured after the stages, with the plate at rest.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   std::stop_token stop{};
 };
@@ -40,10 +40,10 @@ struct DynamicTrials {
 };
 
 /// Runs the trials. Frames are the counts of the simulated camera. Frame k of a pass has the same random numbers at
-/// every speed, and each pass starts in the same sampling phase, so ratios between speeds are paired. The picture has
-/// no lag, because the transfer functions of time constant and exposure have their mean lag removed. A triangle is
-/// judged at its position at the time at which its rows are read. Internal noise is drawn once per decision for any
-/// number of frames. Errors: `invalid_input` (options that cannot be met; a sensor with modules, microscan or
+/// every speed, and each pass starts in the same sampling phase. Ratios between speeds are therefore paired. The
+/// picture has no lag, because the transfer functions of time constant and exposure have their mean lag removed. A
+/// triangle is judged at its position at the time at which its rows are read. Internal noise is drawn once per decision
+/// for any number of frames. Errors: `invalid_input` (options that cannot be met; a sensor with modules, microscan or
 /// super-resolution), `interrupted`, errors of the stages.
 [[nodiscard]] Result<std::vector<DynamicTrials>> dynamic_trials(const SensorSpec& sensor, TemplateObserver& observer,
                                                                 const DynamicTrialOptions& options);

@@ -25,7 +25,7 @@ struct EffectScene {
 /// Options of the planner.
 struct EffectPlannerOptions {
   double tolerance_percent = 1;     ///< allowed change of the 75 % acuity by all skipped effects together
-  std::vector<Effect> skip, force;  ///< override the prediction; the reasons state it
+  std::vector<Effect> skip, force;  ///< override the prediction; the reasons of the decisions state this
 };
 
 /// Prediction at one contrast before the simulation.
@@ -36,7 +36,7 @@ struct ContrastOutlook {
   double noise_exponent = 0;     ///< d ln S75 / d ln q_eff
   double blur_exponent = 0;      ///< d ln D / d ln S
   double observer_variance = 0;  ///< share of the observer's own noise (internal, or of the eye) in q_eff squared
-  double weibull_slope = 0;      ///< slope of the psychometric function of that observer, at 75 %
+  double weibull_slope = 0;  ///< slope of the psychometric function of the observer that knows the position, at 75 %
 };
 
 /// Decisions of the planner, with the predictions on which they are based.
@@ -63,18 +63,18 @@ struct SceneSurvey {
 
 /// Decides which effects are skipped, by the criteria of docs/method/effect-planning.md. For each contrast, a criterion
 /// gives an upper bound of the change of S75 that results from skipping an effect. The largest of these bounds is used.
-/// The effects with the smallest bounds are skipped as long as their sum is within four fifths of the tolerance; the
-/// rest is reserved for numerical errors. Detector footprint, microscan, super-resolution and motion by half a pitch or
-/// more per time constant have no criterion and are always simulated. All effects are simulated if a contrast of the
-/// scene has no threshold, or if counts are too coarse or too few. Takes microseconds. Errors: `invalid_input` (no
-/// contrast has a threshold).
+/// The effects with the smallest bounds are skipped as long as their sum is within four fifths of the tolerance. The
+/// rest of the tolerance is reserved for numerical errors. Detector footprint, microscan, super-resolution and motion
+/// by half a pitch or more per time constant have no criterion and are always simulated. All effects are simulated if a
+/// contrast of the scene has no threshold, or if counts are too coarse or too few. Takes microseconds. Errors:
+/// `invalid_input` (no contrast has a threshold).
 [[nodiscard]] Result<EffectPlan> plan_effects(const SceneSurvey& survey, const EffectPlannerOptions& options);
 /// Runs survey_scene() and plan_effects() on its result.
 [[nodiscard]] Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& observer,
                                               const EffectScene& scene, const EffectPlannerOptions& options);
 
-/// Planner that caches its latest surveys, so that it plans immediately if only tolerance, requests or trials differ.
-/// Thread-safe; a request that arrives during a survey waits for it.
+/// Planner that caches its latest surveys. It plans immediately if only tolerance, requests or trials differ.
+/// Thread-safe; a request that arrives during a survey waits for the survey.
 class EffectPlanner {
  public:
   /// Plans the effects as plan_effects() does, with a new observer.

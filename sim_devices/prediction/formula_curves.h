@@ -31,8 +31,8 @@ struct AxisCurves {
 /// Returns the MRTD in kelvin over cycles/mrad, from 1 % to 100 % of the Nyquist frequency of the sampling. By
 /// definition the curve ends there. Contains the MTF of optics and detector, but not display and eye.
 [[nodiscard]] Result<AxisCurves> mrtd_curves(const SensorSpec& spec, const FormulaConditions& conditions);
-/// Returns the MTDP-like curve. It continues beyond Nyquist as long as at least two bars are resolved at the best phase
-/// and the modulation is above 1 %.
+/// Returns the MTDP-like curve. The curve continues beyond Nyquist as long as at least two bars are resolved at the
+/// best phase and the modulation is above 1 %.
 [[nodiscard]] Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditions& conditions);
 /// Returns the contrast threshold of the system over cycles/mrad, up to Nyquist: eye / (display x sensor MTF) x sqrt(1
 /// + alpha^2 sigma^2 / S^2), as in the TTP model of 2004. sigma is the noise after the eye's channel exp(-2.2 ln^2).

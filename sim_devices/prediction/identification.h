@@ -33,12 +33,12 @@ struct IdentificationRange {
 enum class TemplateKnowledge {
   behind_camera,          ///< pictures taken by this camera with this motion, as for people who learned from them
   behind_camera_at_rest,  ///< pictures taken by this camera without motion
-  ideal                   ///< ideal pictures without blur; a blurred target can then resemble another target
+  ideal                   ///< ideal pictures without blur; a blurred target can then resemble a wrong target
 };
 /// Differences between the targets.
 enum class TargetCues {
   all,   ///< shape, size and temperature pattern
-  shape  ///< every view has its dT_RSS uniformly over its shape, and the mean size of the set
+  shape  ///< every view has its dT_RSS uniformly over its shape, and is scaled to the mean size of the set
 };
 
 /// Uses of the frames of a pass that identify() supports.
@@ -56,13 +56,14 @@ struct IdentificationTask {
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;  ///< pictures that the observer uses as templates
   TargetCues cues = TargetCues::all;                               ///< differences between the targets
   int decisions = 2000;                                            ///< decisions per target and range, over all aspects
-  /// Motion of the targets in the picture: they move, or the camera turns. The effects must be planned for it.
+  /// Motion of the targets in the picture: they move, or the camera turns. The plan must include the effects of this
+  /// motion.
   SceneMotion motion{};
   /// Use of the frames of a pass, as for a moving triangle; internal noise is drawn once per decision.
   SequenceObserver sequence = SequenceObserver::single_frame;  ///< one of `identification_sequences`
   int frames = 8;                                              ///< frames of a pass; not used for a single frame
   /// Stages after the camera, created for every pass if they have a memory; empty: none. Before the first frame of a
-  /// pass they receive as many frames of the same motion as they store. Their lag is not removed.
+  /// pass, the stages receive as many frames of the same motion as they store. The lag of the stages is not removed.
   std::function<std::vector<std::unique_ptr<ChainStage>>()> stages{};
   /// Largest distance, in samples, over which a picture influences a sample after the stages; empty: the whole picture
   /// has an influence.
@@ -79,7 +80,7 @@ struct IdentificationTask {
 
 /// Contrast and noise of the pictures after the stages, measured in pictures at rest.
 struct JudgedPictures {
-  double gain = 1;  ///< gain of the contrast of all views together; judged pictures are divided by it
+  double gain = 1;  ///< gain of the contrast of all views together; judged pictures are divided by this gain
   double least_gain = 1, largest_gain = 1;  ///< smallest and largest gain of a single view
   double noise_k = 0;                       ///< temporal noise of a sample, divided by the gain: mean over the views
 };
@@ -88,7 +89,8 @@ struct JudgedPictures {
 struct IdentificationPoint {
   double range_m = 0, transmittance = 1;
   std::vector<std::vector<int>> answers;  ///< [shown][answered]
-  /// Share of correct answers for each draw of noise. Draws are independent; targets and aspects share them.
+  /// Share of correct answers for each draw of noise. Draws are independent. All targets and aspects use the same
+  /// draws.
   std::vector<double> by_draw;
   /// Proportion correct of an observer with an eye, for the worst and the best values of its open parameters.
   std::optional<std::pair<double, double>> spread{};
@@ -107,25 +109,25 @@ struct IdentificationEffort {
 /// Predicts the effort without computing. Errors: those of identify() about the targets and their size.
 [[nodiscard]] Result<IdentificationEffort> planned_effort(const IdentificationTask& task);
 
-/// Returns one point per range, in the same order. Every target in every aspect is shown with each draw of sensor and
-/// internal noise, in one of 16 sampling phases that change from draw to draw. The template observer sets the internal
-/// noise and the enlargement of the sensor's noise. The contrast is dT_RSS attenuated by the air; for an observer with
-/// an eye it is converted to the luminance contrast of its display. As in dynamic_trials(), a target in motion is
-/// judged at its true position, without the mean lag of time constant and exposure. Each row is judged at the time at
-/// which it is read.
+/// Returns one point per range, in the same order. Every target in every aspect is shown with each draw of sensor noise
+/// and internal noise. The sampling phase is one of 16 and changes from draw to draw. The template observer sets the
+/// internal noise and the enlargement of the sensor's noise. The contrast is dT_RSS attenuated by the air; for an
+/// observer with an eye it is converted to the luminance contrast of its display. As in dynamic_trials(), a target in
+/// motion is judged at its true position, without the mean lag of time constant and exposure. Each row is judged at the
+/// time at which it is read.
 ///
-/// Stages receive rounded and clipped counts: of the window and its surround, or of the whole picture if a stage needs
-/// it. Internal noise is relative to the contrast of a view in the judged pictures, and the observer enlarges the noise
-/// of the judged pictures, so a gain has no effect. The templates of the observer do not include the stages. Ranges run
-/// in parallel on all processors, and the result does not depend on their number. Dead detectors are left out. Counts
-/// are rounded with the noise, not with the signal. Errors: `invalid_input` (fewer than two targets, targets that are
-/// equal from every side, a target without contrast, counts too coarse for the noise, targets too large for the
-/// observer, more than 5 pixels per frame, motion with microscan or super-resolution, several frames with image
+/// Stages receive rounded and clipped counts of the window and its surround, or of the whole picture if a stage needs
+/// it. Internal noise is relative to the contrast of a view in the judged pictures. The observer enlarges the noise of
+/// the judged pictures. A gain therefore has no effect. The templates of the observer do not include the stages. Ranges
+/// run in parallel on all processors, and the result does not depend on their number. Dead detectors are left out.
+/// Counts are rounded with the noise, not with the signal. Errors: `invalid_input` (fewer than two targets, targets
+/// that are equal from every side, a target without contrast, counts too coarse for the noise, targets too large for
+/// the observer, more than 5 pixels per frame, motion with microscan or super-resolution, several frames with image
 /// dance, targets that do not fit into the picture of a stage, contrasts that reach the lowest or highest count),
 /// `not_identifiable` (no contrast after the stages), `interrupted`, errors of the stages.
 [[nodiscard]] Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task);
 
-/// Pictures of identify() for another observer. Immutable, thread-safe.
+/// Pictures of identify() for use with a different observer. Immutable, thread-safe.
 class IdentificationFrames {
  public:
   /// Prepares the pictures of a task. Errors: those of identify() about the targets.

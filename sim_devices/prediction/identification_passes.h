@@ -55,9 +55,9 @@ class IdentificationPasses {
   };
   /// Returns the frames of a pass of this view and sampling phase.
   [[nodiscard]] Signals signals(std::size_t target, std::size_t aspect, std::size_t phase) const;
-  /// Returns the windows that the observer of the task judges, with the noise of a draw: the first frame, all frames,
-  /// or their mean at the position in the middle of the pass. In kelvin of the judged contrast. Errors: those of the
-  /// stages.
+  /// Returns the windows that the observer of the task judges, with the noise of a draw. These are the first frame, all
+  /// frames, or the mean of the frames at the position in the middle of the pass. In kelvin of the judged contrast.
+  /// Errors: those of the stages.
   [[nodiscard]] Result<std::vector<PassWindow>> windows(const Signals& signals, std::uint64_t draw) const;
 
   /// Returns the scale of a view.
@@ -78,7 +78,7 @@ class IdentificationPasses {
     double noise_ratio = 1;
     [[nodiscard]] double gain() const { return product / energy; }
   };
-  /// `empty`: judged frames without a target, with the same noise.
+  /// `empty`: judged frames without a target and with the same noise.
   [[nodiscard]] Result<ViewGain> gain_of(std::size_t target, std::size_t aspect, const std::vector<cv::Mat1f>& noise,
                                          const std::vector<cv::Mat1f>& empty) const;
   /// Returns the window whose middle is the sample nearest to `place`.
@@ -103,11 +103,11 @@ class IdentificationPasses {
   mutable std::vector<std::unique_ptr<ChainStage>> without_memory_;  ///< kept from pass to pass
 };
 
-/// Returns the observer with a search that is half a sample wider, so that it can be centred on any true position
+/// Returns the observer with a search that is half a sample wider. This search can be centred on any true position
 /// between two samples.
 [[nodiscard]] TemplateObserverSpec searching_at_true_places(TemplateObserverSpec spec);
-/// Adds `share` times the scores `wide` of searching_at_true_places(), centred on `phase`, to the scores `own` of the
-/// observer's own search.
+/// Adds `share` times the scores `wide` to the scores `own`. `wide` comes from searching_at_true_places() and is
+/// centred on `phase`; `own` comes from the observer's own search.
 void add_centred(const TemplateObserverSpec& spec, std::span<const float> wide, cv::Point2d phase, float share,
                  std::span<float> own);
 /// Returns the number of templates of a view that the observer's own search compares.

@@ -31,7 +31,7 @@ using SeenTargets = std::vector<std::vector<SeenAspect>>;
 [[nodiscard]] std::size_t first_draw_of(std::size_t phase, std::size_t target, std::size_t aspect);
 /// Returns the offset of a target's origin from the middle of the window, in samples.
 [[nodiscard]] cv::Point2d view_offset(std::size_t phase);
-/// Returns a number that is unique for each picture without noise. It selects the image dance of the picture.
+/// Returns a number that is unique for each picture without noise. The number selects the image dance of the picture.
 [[nodiscard]] std::uint64_t presentation_of(std::size_t phase, std::size_t target, std::size_t aspect);
 
 /// Returns the number of displayed samples per metre.

@@ -30,7 +30,7 @@ struct PairedTwinOptions {
   PlateRotations rotations_deg{};  ///< rotations of the plates in the pictures of the camera
   SceneMotion motion{};            ///< motion of the target
   Accuracy accuracy{};
-  /// Seed. It may equal the seed of the camera's own simulation, because temporal noise, fixed pattern and the
+  /// Seed. This seed may equal the seed of the camera's own simulation, because temporal noise, fixed pattern and the
   /// observer's noise use separate streams.
   std::uint64_t seed = 1;
   std::stop_token stop{};
@@ -42,12 +42,12 @@ struct TwinAnswer {
   double variance = 0;             ///< variance of that mean, from the scatter over the pictures
 };
 
-/// Shows every trial to the simulated sensor as the camera observed it: sub-pixel phase of the triangle, rotation of
-/// the plate, effective contrast (which the observer also divides by), and size in mrad with the sensor's own
-/// instantaneous field of view. Returns one answer per trial, in the same order. Trials of a presentation must be
-/// consecutive.
+/// Shows every trial to the simulated sensor as the camera observed it. This includes the sub-pixel phase of the
+/// triangle, the rotation of the plate, and the effective contrast, by which the observer also divides. The size in
+/// mrad uses the sensor's own instantaneous field of view. Returns one answer per trial, in the same order. Trials of a
+/// presentation must be consecutive.
 ///
-/// Computes only the windows round the triangles, edge by edge in one picture; other triangles of the plate do not
+/// Computes only the windows round the triangles, edge by edge in one picture. Other triangles of the plate do not
 /// contribute to a window. Fixed pattern and dead pixels are new in every draw and set-up, so the mean includes them.
 /// Errors: `interrupted` within a presentation, `invalid_input` (fewer than two draws, an invalid contrast or size),
 /// and those of Observer::prepare().

@@ -27,7 +27,7 @@ struct Proportion {
 /// Orientations that are shown.
 enum class ShownOrientations {
   as_needed,  ///< one orientation represents all four if no effect depends on direction
-  all,        ///< for draw-by-draw comparisons of conditions if some of them need all four
+  all,        ///< all four, for draw-by-draw comparisons of conditions of which some need all four
 };
 
 /// Fails with `invalid_input` if the samples of the observer do not have the shape of the pixels of the sensor.
@@ -59,10 +59,11 @@ struct WhiteNoise {
   double internal = 0;  ///< noise of the observer
 };
 
-/// Responses to the signal for every sampling phase, and projected noise. Each is computed once and shared by the
-/// contrasts. Every kind of noise has its own random numbers, so leaving out one kind does not change the numbers of
-/// another kind. White noise that is rotated, mirrored or negated is equally probable and has the scores of exchanged
-/// templates. Each draw is therefore used in all sixteen ways, each in a sixteenth of the phases. One thread at a time.
+/// Responses to the signal for every sampling phase, and projected noise. Each response is computed once and shared by
+/// the contrasts. Every kind of noise has its own random numbers, so leaving out one kind does not change the numbers
+/// of another kind. Rotated, mirrored or negated white noise is equally probable; its scores are those of exchanged
+/// templates. Each draw is therefore used in all sixteen ways. Each way is used in a sixteenth of the phases. One
+/// thread at a time.
 class SizeTrial {
  public:
   SizeTrial(const ImageChain& chain, std::shared_ptr<const TemplateBank> bank, double size_pitch,
@@ -76,20 +77,20 @@ class SizeTrial {
   /// twice as many phases as without rounding. Precondition: conditions.by_pixels.
   [[nodiscard]] Proportion pixel_proportion(const PixelContrast& contrast, int draws);
 
-  /// Returns the proportion correct of an observer that knows the position (to half a search step) in white noise of sd
-  /// `noise` relative to the contrast, and noise of the eye of sd `eye_sd` in a score. Exact, without draws
-  /// (known_position.h).
+  /// Returns the proportion correct of an observer that knows the position (to half a search step). The white noise has
+  /// the sd `noise` relative to the contrast, and the noise of the eye has the sd `eye_sd` in a score. Exact, without
+  /// draws (known_position.h).
   [[nodiscard]] double known_position_proportion(double noise, int nodes, double eye_sd = 0) const;
 
-  /// Returns the variance of the score difference between the true template and another template, divided by its value
-  /// for white noise of sd 1. The noise has sd 1, and the samples that `shared` states have the same random number. The
+  /// Returns the variance of the score difference between the true template and a wrong template, divided by its value
+  /// for white noise of sd 1. The noise has sd 1. The samples that `shared` selects have the same random number. The
   /// result is the largest ratio over the alternatives, at the middle of the search.
   [[nodiscard]] double variance_ratio(SharedBy shared) const;
   /// Returns the standard deviation of the noise of the eye in a score, in units of the contrast. 0 without an eye.
   [[nodiscard]] double eye_sd(double contrast_k) const;
-  /// Returns the variance per sample, in units of the contrast squared, of white noise that changes a score difference
-  /// as much as the noise of the observer's eye. The result is the smallest variance over the pairs of alternatives, at
-  /// the middle of the search. 0 without an eye.
+  /// Returns the variance per sample of white noise that changes a score difference as much as the noise of the
+  /// observer's eye. The unit is the contrast squared. The result is the smallest variance over the pairs of
+  /// alternatives, at the middle of the search. 0 without an eye.
   [[nodiscard]] double eye_variance(double contrast_k) const;
 
  private:
@@ -102,7 +103,7 @@ class SizeTrial {
     std::vector<float> scores;  ///< scores of all templates
     cv::Mat1f before_display;   ///< samples with a margin for the display's taps; only with by_pixels
   };
-  /// Result of one trial of pixel_proportion(): 1, 0, or the fair share of a tie.
+  /// Returns the result of one trial of pixel_proportion(): 1, 0, or the fair share of a tie.
   [[nodiscard]] double pixel_trial(const Response& response, const PixelContrast& contrast, std::uint64_t index) const;
   struct FineFields;
   [[nodiscard]] Response response(const FineFields& fields, int per_pitch, cv::Point phase, int per_axis,
@@ -114,15 +115,16 @@ class SizeTrial {
   [[nodiscard]] cv::Mat1b dead(std::uint64_t index, int window) const;
   [[nodiscard]] std::vector<float> projected(const cv::Mat1f& samples) const;
   void shape_white(const WhiteNoise& white);
-  /// Scores of the noise of the eye with sd 1, for draw or trial `index`; empty without an eye.
+  /// Returns the scores of the noise of the eye with standard deviation `sd`, for draw or trial `index`; zeros without
+  /// an eye.
   [[nodiscard]] std::vector<float> eye_scores(std::uint64_t index, double sd) const;
-  /// 1 if the true alternative wins; the fair share of a tie.
+  /// Returns 1 if the true alternative wins; the fair share of a tie.
   [[nodiscard]] double correct(int truth, std::span<const float> signal, std::span<const float> noise,
                                float scale) const;
-  /// Share of correct answers over the phases and the ways of using a draw. White noise is multiplied by `own`,
-  /// coloured noise by `ratio`, and noise of the eye by `eye`.
+  /// Returns the share of correct answers over the phases and the ways of using a draw. White noise is multiplied by
+  /// `own`, coloured noise by `ratio`, and noise of the eye by `eye`.
   [[nodiscard]] double share_in_all_ways(std::size_t draw, float own, float scale, float ratio, float eye);
-  /// Scores of a response whose picture has `defects` replaced.
+  /// Returns the scores of a response whose picture has `defects` replaced.
   [[nodiscard]] std::vector<float> with_defects(const Response& response, const cv::Mat1b& defects) const;
 
   std::shared_ptr<const TemplateBank> bank_;

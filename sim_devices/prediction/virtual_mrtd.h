@@ -23,8 +23,8 @@ namespace todbench {
 /// Task of the observer.
 enum class BarCriterion {
   four_or_five,  ///< two intervals with four and five bars: which had four? 75 %, free of bias
-  /// Yes or no: every gap is lower than both its bars; 75 % yes, 5 % yes without bars. An observer with an eye judges
-  /// the picture after display and eye (SeenPicture), any other observer the camera's picture.
+  /// Yes-or-no question: is every gap lower than both its bars? 75 % yes, with 5 % yes without bars. An observer with
+  /// an eye judges the picture after display and eye (SeenPicture), any other observer the camera's picture.
   bars_resolved,
   detection  ///< two intervals, one with four bars: which one? 75 %; not an MRTD
 };
@@ -54,7 +54,7 @@ struct VirtualMrtdPoint {
   /// threshold_k of an observer with an eye at both limits of its open parameters; empty if there is no threshold at
   /// one of these limits.
   std::optional<std::pair<double, double>> spread_k{};
-  double relative_error = 0;  ///< standard error of threshold_k over threshold_k, from the draws
+  double relative_error = 0;  ///< standard error of threshold_k divided by threshold_k, from the draws
   /// Threshold at the best and at the worst of eight phases across the bars.
   std::optional<double> best_phase_k, worst_phase_k;
   double highest_k = 0;           ///< highest contrast tried
@@ -66,13 +66,13 @@ struct VirtualMrtdPoint {
   double modulation_best = 0, modulation_worst = 0;
 };
 
-/// Returns one point per frequency. Noise of camera and observer as in identify(). Both intervals have independent
+/// Returns one point per frequency. Noise of camera and observer is as in identify(). Both intervals have independent
 /// noise and fixed pattern. Patterns are in one of 8 x 2 phases (eight across the bars). The proportion is over all
 /// pairs of draws. Errors: `invalid_input` (no frequency above 0, a pattern with fewer than 4 or more than 400 samples
 /// on a side, no noise, counts coarser than the noise), `interrupted`.
 [[nodiscard]] Result<std::vector<VirtualMrtdPoint>> virtual_mrtd(const VirtualMrtdTask& task);
 
-/// Pictures of virtual_mrtd() for another observer. Immutable, thread-safe.
+/// Pictures of virtual_mrtd() for use with a different observer. Immutable, thread-safe.
 class BarFrames {
  public:
   /// Prepares the pictures of a task. Errors: those of virtual_mrtd() about the task.

@@ -5,7 +5,7 @@
 namespace todbench {
 
 /// Angular velocity of the target in the picture, x to the right, y downwards. The motion smears the picture of the
-/// target, but the smeared picture is centred on the true position of the target, as for an observer that tracks the
+/// target. The smeared picture is centred on the true position of the target, as for an observer that tracks the
 /// target.
 struct SceneMotion {
   double x_mrad_s = 0, y_mrad_s = 0;

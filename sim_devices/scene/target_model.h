@@ -9,12 +9,12 @@
 
 namespace todbench {
 
-/// Prism: an outline in the plane of length and height, extruded across it.
+/// Prism: an outline in the plane of length and height, extruded perpendicular to this plane.
 struct TargetPart {
   std::string name;
   Polygon profile_m;  ///< x forward, y up from the ground or water
   double width_m = 0;
-  double side_m = 0;  ///< lateral position of its middle; positive to port
+  double side_m = 0;  ///< lateral position of the middle of the prism; positive to port
   double temperature_k = 300, emissivity = 0.95;
 };
 

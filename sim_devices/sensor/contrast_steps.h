@@ -12,7 +12,7 @@ namespace todbench {
 /// picture during a step equals a steady picture at the reached contrast. All rows observe a step at the same moment.
 class ContrastSteps {
  public:
-  /// Constant contrast `delta_t_k`, without a step.
+  /// Creates a constant contrast `delta_t_k`, without a step.
   explicit ContrastSteps(double delta_t_k = 0) : settled_k_(delta_t_k) {}
 
   /// Adds a step to `delta_t_k`. Times must increase from call to call.

@@ -29,13 +29,13 @@ namespace todbench {
 
 /// Returns whether this sensor has image dance.
 [[nodiscard]] bool lets_dance(const SensorSpec& spec);
-/// Returns the bound on the change of ln S75 that a detector causes by averaging the dance over time. `instant` is the
+/// Returns the bound on the change of ln S75 that a detector causes by averaging the dance over time. `instant`: the
 /// same sensor without this average. The bound is 12 / S^2 times the variance that the average turns from dance into
 /// blur.
 [[nodiscard]] double averaged_dance_bound(const SensorSpec& spec, const SensorSpec& instant, double s75_pitch);
 
 /// Displacements of the exposures by image dance, in pitches of each axis: a first-order autoregressive process.
-/// Correlations below 1 % are cut off, so that the work for each exposure is bounded. Immutable.
+/// Correlations below 1 % are set to zero. This limits the work for each exposure. Immutable.
 class ImageDance {
  public:
   /// Precondition: `spec` is as_planned().

@@ -12,11 +12,11 @@ namespace todbench {
 
 /// Returns the temporal noise of a displayed sample in counts, before rounding.
 [[nodiscard]] double noise_in_counts(const SensorSpec& spec);
-/// Returns whether a count is larger than one standard deviation of the noise. If it is not, rounding errors act as
-/// additional noise with a variance of 1/12 squared count, accurate to 3e-9 of a count. Otherwise rounding errors
-/// depend on the signal.
+/// Returns whether a count is larger than one standard deviation of the noise. If the count is not larger, rounding
+/// errors act as additional noise with a variance of 1/12 squared count, accurate to 3e-9 of a count. Otherwise
+/// rounding errors depend on the signal.
 [[nodiscard]] bool rounds_coarsely(const SensorSpec& spec);
-/// Returns whether the surround or a target of this contrast lies less than six standard deviations of the noise away
+/// Returns whether the surround or a target of this contrast is less than six standard deviations of the noise away
 /// from the lowest or highest count.
 [[nodiscard]] bool reaches_an_end(const SensorSpec& spec, double delta_t_k, double background_k);
 

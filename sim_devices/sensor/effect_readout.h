@@ -13,8 +13,8 @@ namespace todbench {
 [[nodiscard]] cv::Point2d readout_slope(const SensorSpec& spec, SceneMotion motion);
 
 /// Returns the position of a point in a picture with sequential readout. `place`: position of the point if all rows
-/// sample together with `middle_row`. The change is a shear along the rows and a stretch across them. In pitches or
-/// samples. If the slope is 0, the position is returned bit for bit.
+/// sample together with `middle_row`. The change is a shear along the rows and a stretch across them. The unit is
+/// pitches or samples. If the slope is 0, the position is returned bit for bit.
 [[nodiscard]] cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row);
 
 /// Returns the distance that the target moves between the two fields of an interlaced frame, in pitches. The even rows
@@ -24,9 +24,9 @@ namespace todbench {
 /// Copies the odd rows of detectors of `later` into `picture`. Row 0 of the samples belongs to an even row.
 void take_odd_rows(cv::Mat& picture, const cv::Mat& later, int samples_per_pitch);
 
-/// Draws an interlaced picture. The even rows show the scene half of the delay before the time of the picture, and the
-/// odd rows half of the delay after it. `draw` receives a displacement of the target, in pitches, and returns the
-/// picture of all rows at one time. If `between_fields` is 0, `draw` is called once.
+/// Draws an interlaced picture. The even rows show the scene half of the delay before the time of the picture. The odd
+/// rows show the scene half of the delay after this time. `draw` receives a displacement of the target, in pitches, and
+/// returns the picture of all rows at one time. If `between_fields` is 0, `draw` is called once.
 template <typename Draw>
 [[nodiscard]] auto in_fields(cv::Point2d between_fields, int samples_per_pitch, Draw draw) {
   if (between_fields == cv::Point2d(0, 0)) return draw(cv::Point2d(0, 0));

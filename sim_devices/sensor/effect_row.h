@@ -135,15 +135,16 @@ struct ExpectedScene {
 
 /// Permission for the planner to skip an effect that has a bound.
 enum class WhenBounded { may_be_skipped, simulated };
-/// Whether the effect acts alike along both axes. alike: it changes a picture that is rotated by 90 degrees in the same
-/// way as the picture itself.
+/// Whether the effect acts alike along both axes. alike: the effect changes a picture that is rotated by 90 degrees in
+/// the same way as the original picture.
 enum class AxisDirections { alike, different };
 
 /// Row of the table. A member at its default means that the effect does not use it.
 struct EffectRow {
   std::string_view title;  ///< title in the report
   std::vector<SensorKey> keys;
-  /// Returns a sentence for an impossible combination of parameters, otherwise empty. Called after checking the ranges.
+  /// Returns a sentence about an impossible combination of parameters; otherwise empty. Called after the check of the
+  /// ranges.
   std::string (*impossible)(const SensorSpec& spec) = nullptr;
 
   bool (*is_neutral)(const SensorSpec& spec, SceneMotion motion) = nullptr;
@@ -175,7 +176,7 @@ struct EffectRow {
 /// Returns the variance per displayed sample of all white noise in the plan.
 [[nodiscard]] double white_variance_k2(const SensorSpec& spec, const SensorPlan& plan, double noise_factor);
 
-/// The rows. Each is defined in the file of its effect.
+/// The rows. Each row is defined in the file of its effect.
 namespace effect_rows {
 #define TODBENCH_EFFECT_ROW(name) [[nodiscard]] EffectRow name();
 TODBENCH_EFFECTS(TODBENCH_EFFECT_ROW)

@@ -24,11 +24,11 @@ class ImageChain {
   /// Returns the lattice that keeps wrapped signal and truncated band within the tolerances, for shapes of `size_pitch`
   /// (square root of area, in pitches).
   [[nodiscard]] FrequencyLattice lattice(double size_pitch) const;
-  /// Returns the number of points per pitch at which the fine image contains the whole band. It is a multiple of 16, so
-  /// that all 16 x 16 phases lie on these points.
+  /// Returns the number of points per pitch at which the fine image contains the whole band. The number is a multiple
+  /// of 16, so that all 16 x 16 phases lie on these points.
   [[nodiscard]] int points_per_pitch() const { return points_per_pitch_; }
   /// Returns the image of a shape of contrast 1 near the origin. With sequential readout, the row of the origin samples
-  /// at the time of the picture, and the times of the other rows count from it.
+  /// at the time of the picture. The times of the other rows count from this time.
   [[nodiscard]] PolygonImage image(const Polygon& shape_pitch) const;
   /// Returns whether rotating the shape by 90 degrees only rotates its image by 90 degrees.
   [[nodiscard]] bool turns_alike(const PolygonImage& image) const {
@@ -44,10 +44,10 @@ class ImageChain {
   };
   /// Computes samples of a shape on an infinite plane: `size` samples at distances of `step`, the first sample at
   /// `first`, both in detector pitches of each axis. Uses Richardson extrapolation from the periods P and 2P, because
-  /// the wrapped signal falls as P^-3; the difference between the two gives the error bound. If a shape reaches far
-  /// beyond the window, only its part near the window is computed in this way. The rest contributes the integrated tail
-  /// of the diffraction spot, c r^-3, so that memory and time do not grow with the shape. With sequential readout, the
-  /// times of the rows count from the row of the origin.
+  /// the wrapped signal falls as P^-3. The difference between the two results gives the error bound. If a shape reaches
+  /// far beyond the window, only its part near the window is computed in this way. The rest contributes the integrated
+  /// tail of the diffraction spot, c r^-3. Memory and time therefore do not grow with the shape. With sequential
+  /// readout, the times of the rows count from the row of the origin.
   [[nodiscard]] InfinitePlane infinite_plane(const Polygon& shape_pitch, cv::Point2d first, double step,
                                              cv::Size size) const;
 

@@ -9,7 +9,7 @@
 
 namespace todbench {
 
-/// Properties of a sensor program that fulfils the contract. No value of these properties violates the contract.
+/// Properties of a sensor program that fulfils the contract. The contract allows any values of these properties.
 struct SensorModuleReport {
   std::vector<cv::Size> shapes;    ///< sizes of the frames that the program returned, in pixels
   bool network_cut = false;        ///< the program could not reach any other computer

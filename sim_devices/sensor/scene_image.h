@@ -19,11 +19,11 @@ namespace todbench {
 /// Samples of a scene after optics and detector of one sensor. Thread-safe. Tables are computed once per sensor and
 /// frame size.
 ///
-/// A scene is split into its exact means over the cells of the sampling grid and a remainder in the cells that an edge
-/// crosses. The means are filtered with the response to a unit cell, including all frequencies that sampling folds. The
-/// remainder has mean 0 and is expanded in Legendre polynomials over the cell, with exact coefficients (Gauss and
-/// Green). Each polynomial has its own response, which falls as r^-4 and is kept for 6 samples. The degree follows from
-/// the band: the result agrees with ImageChain to 3e-5 of a contrast (test
+/// The method splits a scene into its exact means over the cells of the sampling grid and a remainder in the cells that
+/// an edge crosses. The means are filtered with the response to a unit cell, including all frequencies that sampling
+/// folds. The remainder has mean 0 and is expanded in Legendre polynomials over the cell, with exact coefficients
+/// (Gauss and Green). Each polynomial has its own response, which falls as r^-4 and is kept for 6 samples. The degree
+/// follows from the band: the result agrees with ImageChain to 3e-5 of a contrast (test
 /// SceneImager.EqualsTheImageOfThePolygonAlone).
 ///
 /// For an interlaced sensor, each field shows a moving scene at the time of the field (effect_readout.h).
@@ -44,8 +44,8 @@ class SceneImager {
   /// ignored.
   [[nodiscard]] static cv::Mat1d means(std::span<const StepEdge> edges, cv::Size size);
 
-  /// Returns the image of a picture instead of edges. Each element is a square with a side of `pixel_samples` (at most
-  /// 1); element (0, 0) is centred at `first`. Beyond the picture the level is 0.
+  /// Returns the image of a picture instead of edges. Each element of the picture is a square with a side of
+  /// `pixel_samples` (at most 1); element (0, 0) is centred at `first`. Beyond the picture the level is 0.
   [[nodiscard]] cv::Mat1d image(const cv::Mat1d& picture, double pixel_samples, cv::Point2d first, cv::Size size) const;
 
  private:

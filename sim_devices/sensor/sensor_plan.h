@@ -23,7 +23,7 @@ struct EffectDecision {
   /// Change of the 75 % acuity if the effect is skipped; empty if no criterion bounds it.
   std::optional<double> predicted_change_percent;
   bool on_request = false;  ///< skipped because a list `skip` names it, regardless of the change
-  /// Returns whether the effect is skipped and the sensor is the same with and without it.
+  /// Returns whether the effect is skipped without any change of the sensor.
   [[nodiscard]] bool changes_nothing() const { return decision == Decision::skip && predicted_change_percent == 0.0; }
 };
 
@@ -35,7 +35,7 @@ struct SensorPlan {
 };
 
 /// Returns the plan that simulates every effect that is not neutral in this sensor. The lists `skip` and `force`
-/// override this; the reasons then state it.
+/// override this; the reasons of the decisions then state this.
 [[nodiscard]] SensorPlan full_plan(const SensorSpec& spec, const std::vector<Effect>& skip,
                                    const std::vector<Effect>& force, SceneMotion motion = {});
 

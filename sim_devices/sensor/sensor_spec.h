@@ -28,7 +28,7 @@ enum class PitchAxis { x, y };
 struct SensorSpec {
   std::string name;
   std::string description;
-  int width = 320, height = 240;  ///< detectors
+  int width = 320, height = 240;  ///< number of detectors
   double pitch_um = 47.5;         ///< between the centres of neighbouring detectors, along x, and along y by default
   double pitch_y_um = 0;          ///< the same along y; 0: pitch_um
   double detector_um = 42.5;      ///< side of the sensitive area along x, and along y by default; at most the pitch
@@ -39,7 +39,7 @@ struct SensorSpec {
   double turbulence_cn2_m_minus_2_3 = 0;  ///< structure parameter Cn2 of the air; 0: no turbulence
   double turbulence_path_m = 1000;        ///< length of the turbulent path
   double turbulence_correlation_ms = 0;   ///< correlation time of the image dance; 0: every frame is the long exposure
-  double optics_transmission = 0.8;       ///< normalised out of the signal: NETD is referred to the scene
+  double optics_transmission = 0.8;       ///< not included in the signal: NETD is referred to the scene
   double aberration_sigma_pitch = 0;  ///< Gaussian blur of the lens beyond diffraction, per axis, in detector pitches
   double halo_share = 0;  ///< share of the light that is spread into a wide Gaussian round every point; 0: no halo
   double halo_sigma_pitch = 0;       ///< sigma of that Gaussian per axis

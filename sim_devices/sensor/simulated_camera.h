@@ -24,8 +24,8 @@ class SceneHolder {
   /// Steps the contrast between the last frame and the next frame. The times of successive steps are spread evenly over
   /// the frame period.
   void step_to(double delta_t_k);
-  /// Returns the scene at a time of the camera's clock, and makes this the present time. During a run the plate is in
-  /// motion. After a step the scene has the contrast that the detector has reached.
+  /// Returns the scene at a time of the camera's clock, and makes this the present time. During a run the plate moves.
+  /// After a step the scene has the contrast that the detector has reached.
   [[nodiscard]] PlateScene scene_at(double time_s, const SensorSpec& spec);
   /// Starts a run along x from the present position of the plate; the next set() ends the run.
   PlateRun run_along_x(double to_mm, double speed_mm_s);

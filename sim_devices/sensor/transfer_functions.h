@@ -43,13 +43,13 @@ class FootprintMtf {
 [[nodiscard]] TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths,
                                                SceneMotion motion = {});
 /// Returns the same function from a table at the frequencies m / period, |m| <= band, bit for bit. Optics depend only
-/// on the radius and the footprint is a product over the axes, so only an eighth of the plane and both axes are
-/// computed. With different pitches along x and y no table is used.
+/// on the radius, and the footprint is a product over the axes. The function therefore computes only an eighth of the
+/// plane and both axes. With different pitches along x and y no table is used.
 [[nodiscard]] TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& scope);
 
 /// Returns the highest relevant frequency along either axis, in cycles per pitch: the cut-off of the optics, or the
-/// frequency at which they have reduced the signal to the tolerance. If no planned effect limits it, the spectrum of a
-/// sharp shape is unlimited. The limit of 16 cycles per pitch then causes an error near 1/(pi^2 16) at edges.
+/// frequency at which the optics have reduced the signal to the tolerance. If no planned effect limits it, the spectrum
+/// of a sharp shape is unlimited. The limit of 16 cycles per pitch then causes an error near 1/(pi^2 16) at edges.
 [[nodiscard]] double highest_frequency(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy);
 
 /// Returns the distance that the target moves from one row to the next, in pitches: the sum over the rows of

@@ -45,7 +45,7 @@ class CameraDesk {
  public:
   using Request = std::function<void(FrameSource&)>;
 
-  /// Discards requests to another camera. Call it after a camera was opened.
+  /// Discards requests to a previous camera. Call this function after a camera was opened.
   void open();
   /// Adds a request.
   void ask(Request request);

@@ -27,8 +27,8 @@ struct LevelSpan {
   [[nodiscard]] double span() const { return high - low; }
 };
 
-/// Returns the range from the 0.05 % to the 99.95 % quantile, which ignores a few bad pixels and contains the triangles
-/// of a plate. It is at least `least_span` wide, so that noise alone does not fill the map.
+/// Returns the range from the 0.05 % to the 99.95 % quantile. This range ignores a few bad pixels and contains the
+/// triangles of a plate. The range is at least `least_span` wide, so that noise alone does not fill the map.
 [[nodiscard]] LevelSpan automatic_level(const cv::Mat1w& counts, double least_span);
 
 /// Marks over a picture.
@@ -48,8 +48,8 @@ struct PictureMarks {
 /// bin.
 [[nodiscard]] std::vector<int> histogram(const cv::Mat1w& counts, const LevelSpan& level, int bins);
 
-/// Returns stuck pixels: pixels that differ by more than `limit_counts` from the median of their eight neighbours,
-/// while every neighbour differs from this median by less than a twentieth of that difference.
+/// Returns stuck pixels. A stuck pixel differs by more than `limit_counts` from the median of its eight neighbours, and
+/// every neighbour differs from this median by less than a twentieth of that difference.
 [[nodiscard]] std::vector<cv::Point> dead_pixels(const cv::Mat1w& counts, double limit_counts);
 
 }  // namespace todbench

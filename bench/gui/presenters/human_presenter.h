@@ -33,7 +33,7 @@ struct HumanOptions {
 [[nodiscard]] std::vector<JudgedTrial> patches_for_a_person(const std::vector<JudgedTrial>& trials,
                                                             const HumanOptions& options);
 /// Returns `options.training` patches for the training: the largest triangles at the highest contrasts, in random
-/// order, so that the person understands the task on easy patches.
+/// order. These easy patches show the person the task.
 [[nodiscard]] std::vector<JudgedTrial> patches_for_training(const std::vector<JudgedTrial>& trials,
                                                             const HumanOptions& options);
 /// Returns the temperatures that are displayed as black and as white.
@@ -43,7 +43,7 @@ struct HumanOptions {
 /// Returns the patch as an operator sees it at the display, in pixels of the screen.
 [[nodiscard]] QImage picture_at_display(const JudgedTrial& judged, const ViewedDisplay& display);
 /// Returns the patch enlarged by bicubic interpolation. The grey scale spans at least three contrasts around the
-/// surround. It does not depend on the direction of the triangle, so that it does not reveal the answer.
+/// surround. The grey scale does not depend on the direction of the triangle and therefore does not reveal the answer.
 [[nodiscard]] QImage picture_for_a_person(const JudgedTrial& judged, int magnification);
 
 /// Presenter of the patches. Used in the window's thread.

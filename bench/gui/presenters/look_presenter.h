@@ -36,7 +36,7 @@ class LookPresenter final : public QObject {
  public:
   explicit LookPresenter(Workbench& bench, QObject* parent = nullptr);
 
-  /// Runs the selected camera. At the same time, a target that the plan can drive is set to the highest contrast of the
+  /// Runs the selected camera. At the same time, sets a target that the plan can drive to the highest contrast of the
   /// plan. The picture does not wait for the target. If the target fails, the user gets a message.
   void start();
   void stop() { bench_.stop(); }
@@ -69,8 +69,8 @@ class LookPresenter final : public QObject {
 
   /// Returns the settings of the running camera, in the order of all_camera_controls; empty before it runs.
   [[nodiscard]] const std::vector<ControlReading>& controls() const { return controls_; }
-  /// Sets a feature of the running camera. The new value is also written to [camera] settings of the plan, so that a
-  /// measurement uses it. controls_changed() follows; if the camera rejects the value, the workbench emits trouble().
+  /// Sets a feature of the running camera. The new value is also written to [camera] settings of the plan, for use in a
+  /// measurement. controls_changed() follows; if the camera rejects the value, the workbench emits trouble().
   void change(const std::string& feature, const std::string& value);
   /// Requests a non-uniformity correction from the camera.
   void correct();

@@ -58,7 +58,7 @@ class NakedEyePresenter final : public QObject {
   [[nodiscard]] const std::optional<NakedEyeSession>& session() const { return session_; }
   /// Returns the folder of the experiment.
   [[nodiscard]] const std::filesystem::path& folder() const { return folder_; }
-  /// Returns the reason why no picture was shown or stored; otherwise empty.
+  /// Returns the reason why a picture was not shown or not stored; otherwise empty.
   [[nodiscard]] QString problem() const { return problem_; }
 
  signals:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lines of the form of a plan as values, generated from the table of plan keys: the kind of input, and functions that
-// read a value from a plan and set it.
+// Lines of the form of a plan as values, generated from the table of plan keys. Each line has the kind of input, and
+// functions that read a value from a plan and set it.
 #pragma once
 
 #include <QString>
@@ -42,8 +42,8 @@ struct FieldColumn {
   QString longest{};  ///< text that must be fully visible; empty: the title
 };
 
-/// A line of the form. It accepts every readable value in range. The validation of the plan finds conflicts with other
-/// values.
+/// A line of the form. The line accepts every readable value in range. The validation of the plan finds conflicts with
+/// other values.
 struct PlanField {
   QString label;        ///< label with the unit
   QString tool_tip;     ///< meaning, accepted values and default

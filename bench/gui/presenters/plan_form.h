@@ -20,7 +20,7 @@ class PlanForm {
   [[nodiscard]] const std::vector<PlanField>& fields() const { return fields_; }
   /// Returns the displayed text of line `i`: the last entered text, or the value of the plan.
   [[nodiscard]] QString text(std::size_t i) const;
-  /// Returns the error of line `i`; empty: it is valid.
+  /// Returns the error of line `i`; empty: the line is valid.
   [[nodiscard]] QString problem(std::size_t i) const { return lines_[i].problem; }
   /// Returns the errors of keys without a line.
   [[nodiscard]] const QStringList& other_problems() const { return others_; }

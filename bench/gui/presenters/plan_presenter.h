@@ -18,10 +18,10 @@ namespace todbench {
 enum class EffectChoice { planner, simulate, skip };
 inline constexpr std::array all_effect_choices{EffectChoice::planner, EffectChoice::simulate, EffectChoice::skip};
 
-/// Presenter of the plan of the workbench. It validates every change as for a plan file. Counts and bench time are
-/// updated during the call. The decisions of the planner, the uncertainties and the time of the simulation come from
-/// predict_plan(), which runs in the background. While a slider moves, predictions run one after the other. Used in the
-/// window's thread.
+/// Presenter of the plan of the workbench. The presenter validates every change in the same way as a plan file. Counts
+/// and bench time are updated during the call. The decisions of the planner, the uncertainties and the time of the
+/// simulation come from predict_plan(), which runs in the background. While a slider moves, predictions run one after
+/// the other. Used in the window's thread.
 class PlanPresenter final : public QObject {
   Q_OBJECT
 
@@ -50,7 +50,7 @@ class PlanPresenter final : public QObject {
   /// Returns the choice for an effect in the current plan.
   [[nodiscard]] EffectChoice choice(Effect effect) const;
 
-  /// Returns whether there is a change to undo. Changes from any source since the choice of the device count; a
+  /// Returns whether there is a change to undo. Counts all changes since the device was selected, from any source. A
   /// movement of a slider is one change.
   [[nodiscard]] bool can_undo() const { return !undone_to_.empty(); }
   /// Returns whether there is an undone change to repeat.
@@ -66,8 +66,8 @@ class PlanPresenter final : public QObject {
   [[nodiscard]] bool expected_known() const { return !expected_.empty(); }
   /// Returns the thresholds of the direct estimate; empty until they are known.
   [[nodiscard]] const std::vector<ExpectedThreshold>& expected() const { return expected_; }
-  /// Returns the prediction for this plan, or for the last plan until the new prediction is complete; empty before the
-  /// first prediction, and after a change of any other value than tolerance and phases.
+  /// Returns the prediction for the current plan, or for the previous plan until the new prediction is complete. Empty
+  /// before the first prediction, and after a change of a value other than tolerance and phases.
   [[nodiscard]] const std::optional<PlanForecast>& forecast() const { return forecast_; }
   /// Returns whether the prediction belongs to the current plan.
   [[nodiscard]] bool forecast_current() const { return forecast_ && forecast_->plan == bench_.plan(); }

@@ -69,16 +69,16 @@ struct PlanPreview {
   [[nodiscard]] std::optional<double> uncertainty_percent() const;
 };
 
-/// Computes the outlook, fast enough to follow a slider. If the plan has other numbers of phases than the forecast,
+/// Computes the outlook, fast enough to follow a slider. If the plan and the forecast have different numbers of phases,
 /// ln(1 + uncertainty) is scaled with the square root of forecast phases / plan phases, except for an adaptive
 /// schedule. The time of the simulation is scaled with plan phases / forecast phases. If `seen` is null, only counts
 /// and bench time are computed.
 [[nodiscard]] PlanPreview outlook(const Plan& plan, const std::vector<TargetPlate>& plates, const PlanForecast* seen,
                                   double frame_rate_hz);
 
-/// Returns the plan with another tolerance. Sets the phases of camera and twin to the smallest number (2 to 256) with
-/// which the camera reaches the tolerance at every contrast with a threshold, or to 256 if no number suffices. For an
-/// adaptive schedule, sets the requested half-width instead. If `seen` is null, the phases do not change.
+/// Returns the plan with a different tolerance. Sets the phases of camera and twin to the smallest number (2 to 256)
+/// with which the camera reaches the tolerance at every contrast with a threshold. If no number suffices, sets them to
+/// 256. For an adaptive schedule, sets the requested half-width instead. If `seen` is null, the phases do not change.
 [[nodiscard]] Plan with_tolerance(Plan plan, const PlanForecast* seen, double tolerance_percent);
 
 /// One point of the frontier: the cost of an accuracy.
@@ -86,7 +86,7 @@ struct AccuracyPrice {
   double tolerance_percent = 0;
   int phases = 0;
   double bench_s = 0;
-  std::optional<double> twin_s;  ///< empty: the simulation cannot reach it
+  std::optional<double> twin_s;  ///< empty: the simulation cannot reach the accuracy
 };
 
 /// Runs predict_plan() and predict_times() for tolerances from 0.5 to 20 %. Omits tolerances that 256 phases do not

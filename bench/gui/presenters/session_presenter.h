@@ -35,7 +35,7 @@ struct OpenedSession {
   Session session;
   ReportData report;
   std::optional<HumanRecord> human;
-  bool recorded = false;               ///< contains its frames and can be replayed
+  bool recorded = false;               ///< the session contains its frames and can be replayed
   std::optional<AccuracyBill> bill{};  ///< bill as in the report
 };
 
@@ -63,15 +63,15 @@ class SessionPresenter final : public QObject {
   void open_and_export(const std::filesystem::path& folder);
   /// Returns the open session; empty if there is none.
   [[nodiscard]] const std::optional<OpenedSession>& current() const { return current_; }
-  /// Compares the open session (or the session that is being opened) with another, with the default margin of
-  /// compare_sessions(). compared() or problem() follows.
+  /// Compares the open session (or the session that is being opened) with the session `other`, with the default margin
+  /// of compare_sessions(). compared() or problem() follows.
   void compare_with(const std::filesystem::path& other);
   [[nodiscard]] const std::optional<ComparedSessions>& compared_sessions() const { return compared_; }
   /// Writes report.html and report.pdf into the open session; exported() or problem() follows.
   void export_reports();
   /// Writes the reports with an order and stores the order in the session. `order`: file with a section [order].
   void export_with_order(const std::filesystem::path& order);
-  /// Makes the plan of the open session the plan of the bench, for another run.
+  /// Makes the plan of the open session the plan of the bench, for a new run.
   void use_plan_again();
 
   /// Returns the figure of the open session, or of the comparison if there is one.

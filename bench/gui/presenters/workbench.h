@@ -52,12 +52,12 @@ class Workbench final : public QObject {
   Q_OBJECT
 
  public:
-  /// Sessions are read from and written to `sessions`.
+  /// Creates the workbench. Sessions are read from and written to `sessions`.
   explicit Workbench(std::filesystem::path sessions, QObject* parent = nullptr);
   ~Workbench() override;
 
   [[nodiscard]] const Plan& plan() const { return plan_; }
-  /// Replaces the plan. If it names another camera, that camera becomes the device.
+  /// Replaces the plan. If the plan names a different camera, that camera becomes the device.
   void set_plan(const Plan& plan);
   [[nodiscard]] const std::filesystem::path& sessions_folder() const { return sessions_; }
 
@@ -72,8 +72,8 @@ class Workbench final : public QObject {
   void rescan();
 
   [[nodiscard]] Activity activity() const { return activity_; }
-  /// Stops the running job and runs another with the devices. `job` is called on the device thread with the plan, when
-  /// its devices are ready. If it returns an error other than `interrupted`, trouble() is emitted.
+  /// Stops the running job and runs a new job with the devices. `job` is called on the device thread with the plan,
+  /// when its devices are ready. If it returns an error other than `interrupted`, trouble() is emitted.
   using DeviceJob = std::function<Result<void>(const Plan&, std::stop_token)>;
   void run(Activity activity, DeviceJob job);
   /// Runs a job without devices in the same way, with the unchanged plan.
@@ -105,7 +105,8 @@ class Workbench final : public QObject {
   void trouble(const QString& sentence, Remedy remedy);
 
  private:
-  /// Serial number of the camera of the window's own emulated laboratory; empty while there is none. Any thread.
+  /// Returns the serial number of the camera of the window's own emulated laboratory; empty if there is no laboratory.
+  /// Any thread.
   [[nodiscard]] std::string laboratory_serial();
   [[nodiscard]] Result<Plan> with_devices(Plan plan, const QString& device, const std::stop_token& stop);
   enum class Devices { needed, none };

@@ -16,17 +16,17 @@ class FieldEditor final : public QWidget {
   Q_OBJECT
 
  public:
-  /// The inner widget has the object name of the field; the error label below it has the same name followed by
-  /// "Problem".
+  /// Creates the editor. The inner widget has the object name of the field; the error label below it has the same name
+  /// followed by "Problem".
   explicit FieldEditor(const PlanField& field, QWidget* parent = nullptr);
 
   /// Returns the text of the widget.
   [[nodiscard]] QString text() const { return text_(); }
-  /// Sets the text without emitting a signal. While the user is typing, the text stays.
+  /// Sets the text without emitting a signal. While the user is typing, the text does not change.
   void show_text(const QString& text);
   /// Shows an error below the widget; empty: none.
   void show_problem(const QString& sentence);
-  /// Greys the field and states the reason why it has no effect; empty: it has an effect.
+  /// Greys the field and states the reason why the field has no effect; empty: it has an effect.
   void show_idle(const QString& reason);
 
  signals:

@@ -15,11 +15,11 @@ namespace todbench {
 [[nodiscard]] QLabel* hint_label(const QString& text = {});
 /// Returns the button of the main action of a view.
 [[nodiscard]] QPushButton* primary_button(const QString& text, const QString& object_name);
-/// Returns a button of another action.
+/// Returns a button of a secondary action.
 [[nodiscard]] QPushButton* plain_button(const QString& text, const QString& object_name);
 /// Returns a read-only table with a header row.
 [[nodiscard]] QTableWidget* plain_table(const QStringList& header, const QString& object_name);
-/// Wraps texts that are too long for their cell. Use it for tables of few rows.
+/// Wraps texts that are too long for their cell. For tables of few rows.
 void wrap_words(QTableWidget& table);
 /// Sets column widths so that the headings and the texts `longest` fit, one text per column from the first. The last
 /// column fills the remaining width. Returns the table width that fits these columns exactly.

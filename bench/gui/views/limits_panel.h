@@ -16,7 +16,7 @@ class PlanAdvice;
 class Workbench;
 
 /// Panel that computes limits_advice() while it is visible, and again after a change of the plan. Hiding the panel
-/// stops the calculation, so that it does not delay the pictures that a person judges.
+/// stops the calculation, so it does not delay the pictures that a person judges.
 class LimitsPanel final : public QWidget {
   Q_OBJECT
 

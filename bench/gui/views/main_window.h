@@ -47,7 +47,7 @@ class MainWindow final : public QMainWindow {
   Q_OBJECT
 
  public:
-  /// Sessions are read from and written to `sessions`.
+  /// Creates the window. Sessions are read from and written to `sessions`.
   MainWindow(const std::filesystem::path& sessions, Memory memory, QWidget* parent = nullptr);
   ~MainWindow() override;
 
@@ -88,7 +88,7 @@ class MainWindow final : public QMainWindow {
   void make_menu();
   void connect_parts();
   void choose_session();
-  /// Returns whether the user agrees to lose a run or answers that are under way; true if there are none.
+  /// Returns whether the user agrees to lose a running measurement or unfinished answers; true if there are none.
   [[nodiscard]] bool may_end(const QString& action);
   void start_run();
   void abort_run();

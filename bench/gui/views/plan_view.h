@@ -30,7 +30,8 @@ class PlanView final : public QWidget {
   explicit PlanView(PlanPresenter& presenter, QWidget* parent = nullptr);
   /// Opens a file or a shipped plan by name; shows an error below the form if it cannot be read.
   void open_plan(const QString& reference);
-  /// Returns the reason why an entry of the form or an edit of the TOML text is not in use; empty: all are in use.
+  /// Returns the reason why an entry of the form or an edit of the TOML text is not in use; empty: all entries are in
+  /// use.
   [[nodiscard]] QString unused_entry() const;
 
  private:
@@ -59,7 +60,7 @@ class PlanView final : public QWidget {
   QPlainTextEdit* toml_;
   QLabel* toml_state_;
   QTimer toml_delay_;         ///< delay after the last key stroke
-  bool toml_edited_ = false;  ///< the text is the user's; it is not replaced while it is edited
+  bool toml_edited_ = false;  ///< the user edited the text; the text is not replaced during the edit
   QString toml_wrong_;        ///< reason why the text is not in use
   QLabel* problem_;
   QPushButton *undo_, *redo_;

@@ -30,7 +30,7 @@ class ReportView final : public QWidget {
  signals:
   /// The user requests a replay of the open session from its frames.
   void replay();
-  /// The user requests another measurement with the plan of the open session.
+  /// The user requests a new measurement with the plan of the open session.
   void again();
   /// The user requests to continue the run of the open session, which ended early.
   void go_on();

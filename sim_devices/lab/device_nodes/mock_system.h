@@ -22,8 +22,8 @@ class MockSystem {
   MockSystem(const MockSystem&) = delete;
   MockSystem& operator=(const MockSystem&) = delete;
 
-  /// Returns whether this process has loaded the preload library and uses emulated devices. Its children do the same if
-  /// the environment names the library.
+  /// Returns whether this process has loaded the preload library and uses emulated devices. Child processes also use
+  /// emulated devices if the environment names the library.
   [[nodiscard]] static bool is_preloaded();
   /// Restarts this program in this process with the preload library. Returns only if the library is already loaded or
   /// cannot be loaded. Call it first, because open files and threads are lost.

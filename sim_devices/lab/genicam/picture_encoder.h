@@ -50,7 +50,7 @@ struct EncoderSettings {
 /// Conversion of exposures to bytes. One thread at a time.
 class PictureEncoder {
  public:
-  /// `kelvin_per_count` and `offset_k` are the scale of the exposures.
+  /// Creates the encoder. `kelvin_per_count` and `offset_k` are the scale of the exposures.
   PictureEncoder(double kelvin_per_count, double offset_k, PlanckScale radiometric)
       : kelvin_per_count_(kelvin_per_count), offset_k_(offset_k), radiometric_(radiometric) {}
 

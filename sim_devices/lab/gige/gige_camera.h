@@ -29,7 +29,7 @@ struct EmulatedGigeCameraConfig {
   /// Frames for which the last picture is repeated after a correction; 0.5 s in real cameras.
   int nuc_freeze_frames = 0;
   double device_temperature_c = 30;
-  /// First 16-bit frame id. It wraps after 136 frames, so that every longer run tests the unwrapping in the client.
+  /// First 16-bit frame id. The id wraps after 136 frames, so every longer run tests the unwrapping in the client.
   std::uint16_t first_frame_id = 65400;
 };
 
@@ -41,7 +41,7 @@ struct EmulatedGigeCameraConfig {
 /// (TemperatureLinear10mK), divided by ten (TemperatureLinear100mK) or converted by `radiometric` (Radiometric).
 /// NoiseReduction averages successive frames; it is on at power-up, as in new cameras.
 ///
-/// The camera's clock advances by one frame period with every exposure from power-up: exposure k at an unchanged rate f
+/// The camera's clock advances by one frame period with every exposure from power-up. Exposure k at an unchanged rate f
 /// has device_time_ns = (k + 1) 10^9 / f. A client in another process can therefore identify the exposure of a frame
 /// (exposure_index()).
 ///

@@ -43,7 +43,7 @@ class GvcpDevice {
   void check_heartbeat(Clock::time_point now);
   /// Removes the controller without a callback, as a reset does.
   void forget_controller();
-  /// Denies control to all clients, as if another program had it. The present controller keeps control.
+  /// Denies control to all clients, as if another program had control. The present controller keeps control.
   void deny_access();
   /// Permits control again.
   void permit_access();
@@ -66,8 +66,8 @@ class GvcpDevice {
   [[nodiscard]] GvcpStatus write(std::uint32_t address, std::uint32_t value, const GvcpEndpoint& from);
   [[nodiscard]] GvcpStatus change_privilege(std::uint32_t value, const GvcpEndpoint& from);
   [[nodiscard]] bool is_controller(const GvcpEndpoint& from) const;
-  /// Returns whether a sender may request packets again: any port of the controller's host, because the client's stream
-  /// socket sends these requests.
+  /// Returns whether a sender may request packets again. Any port of the controller's host may do so, because the
+  /// client's stream socket sends these requests.
   [[nodiscard]] bool may_ask_again(const GvcpEndpoint& from) const;
 
   RegisterMap& registers_;

@@ -71,12 +71,12 @@ struct GvspCameraCounts {
   GvspFaultCounts faults;
 };
 
-/// Camera that serves frames during its lifetime on its own two threads, so that it responds to control messages while
-/// it sends frames. The standard fixes the control port to 3956, so there can be only one camera per IPv4 address of a
-/// network namespace. The camera responds to discovery only on its own interface.
+/// Camera that serves frames during its lifetime on two threads. It responds to control messages while it sends frames.
+/// The standard fixes the control port to 3956, so there can be only one camera per IPv4 address of a network
+/// namespace. The camera responds to discovery only on its own interface.
 ///
-/// Exposure k has the time (k + 1) / frame rate on the camera's clock, which stops while the camera does not expose:
-/// exposure_index() of gige_camera.h returns k for a frame.
+/// On the camera's clock, exposure k has the time (k + 1) / frame rate. The clock stops while the camera does not
+/// expose. exposure_index() of gige_camera.h therefore returns k for a frame.
 ///
 /// Methods may be called from any thread.
 class GvspCamera {
@@ -111,7 +111,7 @@ class GvspCamera {
   void lose_control_messages(std::chrono::milliseconds time);
   /// Restarts the camera: it is off for this time, then has the registers of power-up, no controller and no stream.
   void reset(std::chrono::milliseconds off);
-  /// Denies control to all clients, as if another client had it.
+  /// Denies control to all clients, as if another client had control.
   void deny_access();
   /// Permits control again.
   void permit_access();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// State of an emulated GVSP camera, shared by control thread and streaming thread. Private to them.
+// State of an emulated GVSP camera, shared by control thread and streaming thread. Private to these two threads.
 #pragma once
 
 #include <chrono>

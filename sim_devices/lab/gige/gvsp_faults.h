@@ -19,7 +19,7 @@ struct GvspFaults {
   double lost_frame = 0;     ///< a frame is exposed and numbered, but never sent
   double frozen = 0;         ///< a frame repeats the picture of the previous frame
   double swapped_bytes = 0;  ///< the two bytes of every pixel of a frame are exchanged
-  double wrong_size = 0;     ///< a frame contains half of its rows, and states this
+  double wrong_size = 0;     ///< a frame contains half of its rows, and the leader states this height
   double too_long = 0;       ///< a frame contains undeclared bytes after the payload
   bool operator==(const GvspFaults&) const = default;
 };
@@ -38,7 +38,7 @@ struct FrameFaults {
   std::size_t surplus_bytes = 0;
 };
 
-/// Draws the faults of an exposure. They depend only on `random` and `exposure`, not on earlier calls.
+/// Draws the faults of an exposure. The faults depend only on `random` and `exposure`, not on earlier calls.
 [[nodiscard]] FrameFaults draw_frame_faults(const GvspFaults& faults, const RandomStream& random,
                                             std::uint64_t exposure);
 
@@ -48,7 +48,7 @@ struct PacketSchedule {
   std::vector<std::uint32_t> ids;
   std::uint64_t lost = 0, duplicated = 0, reordered = 0;
 };
-/// Returns the order of the packets. It depends only on the arguments.
+/// Returns the order of the packets. The order depends only on the arguments.
 [[nodiscard]] PacketSchedule schedule_packets(std::uint32_t packets, const FrameFaults& planned,
                                               const GvspFaults& faults, const RandomStream& random,
                                               std::uint64_t exposure);

@@ -15,9 +15,9 @@
 
 namespace todbench {
 
-/// Memory with rules. The registers of the standard (0 ... 0xAFF and stream channel 0 at 0xD00 ... 0xD2F) can all be
-/// read, and written if the standard allows it. The registers of the camera follow their table. Other addresses do not
-/// exist. Thread-safe.
+/// Memory with rules. All registers of the standard (0 ... 0xAFF and stream channel 0 at 0xD00 ... 0xD2F) can be read.
+/// They can be written if the standard allows it. The registers of the camera follow their table. Other addresses do
+/// not exist. Thread-safe.
 class RegisterMap {
  public:
   /// Sets the registers of the features to their power-up values and places `xml` at `xml_address`.

@@ -39,8 +39,8 @@ struct BlackBodyOptions {
   double plate_coupling = 0.02;
   /// Reports absolute temperatures in degrees Celsius, contrary to the table of the instrument.
   bool celsius = false;
-  /// Error of the sensor: returns the real difference in K, which must be finite, for an indicated difference of
-  /// `indicated_k`. Called from any thread. Empty: a perfectly calibrated instrument.
+  /// Error of the sensor: returns the real difference in K for the indicated difference `indicated_k`. The result must
+  /// be finite. Called from any thread. Empty: a perfectly calibrated instrument.
   std::function<double(double indicated_k)> real_delta_t_k{};
   /// Time base of the settling. Called from any thread. Never runs backwards.
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
@@ -55,9 +55,9 @@ struct BlackBodyState {
   bool is_stable = true;
 };
 
-/// Instrument that serves from creation to destruction. It starts stable at a difference of 0. After a set-point s at
-/// time 0 the difference is d(t) = s + (d(0) - s) exp(-t/tau). It does not overshoot, and when it is stable, the
-/// remaining change is below the window.
+/// Instrument that serves from creation to destruction. The instrument starts stable at a difference of 0. After a
+/// set-point s at time 0 the difference is d(t) = s + (d(0) - s) exp(-t/tau). The difference does not overshoot. When
+/// it is stable, the remaining change is below the window.
 class BlackBody {
   struct Settling {
     double start_k = 0, set_point_k = 0;  ///< as indicated
@@ -84,7 +84,7 @@ class BlackBody {
   [[nodiscard]] double indicated(const Settling& settling, std::chrono::steady_clock::time_point time) const;
   [[nodiscard]] Settling settling() const;
   void set_point(double delta_t_k);
-  /// Temperature of the radiator at an indicated difference, and its inverse.
+  /// Return the temperature of the radiator at an indicated difference, and the inverse.
   [[nodiscard]] double radiator_k(double delta_t_k) const;
   [[nodiscard]] double difference_k(double radiator_k) const;
 

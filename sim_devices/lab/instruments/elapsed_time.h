@@ -7,8 +7,8 @@
 
 namespace todbench {
 
-/// Returns the seconds from `from` to `to`; 0 if `to` is earlier, because another thread may have read the clock later
-/// and stored its time first.
+/// Returns the seconds from `from` to `to`; 0 if `to` is earlier. This occurs if another thread reads the clock later
+/// but stores its time first.
 [[nodiscard]] inline double seconds_between(std::chrono::steady_clock::time_point from,
                                             std::chrono::steady_clock::time_point to) {
   return std::max(0.0, std::chrono::duration<double>(to - from).count());

@@ -48,8 +48,8 @@ struct PlateStageOptions {
   double slowest_run_mm_per_s = 0.01;  ///< the fastest run has the speed of the table
   double run_jitter_mm = 0;  ///< standard deviation of the position during a run, a new random value every millisecond
   std::uint64_t seed = 1;    ///< seed of the jitter
-  /// Error of the stage: returns the real position of the plate, which must be finite, for an indicated position of
-  /// `indicated_mm`. Called from any thread. Empty: no error. The owner of the scene applies this error; the encoders
+  /// Error of the stage: returns the real position of the plate for the indicated position `indicated_mm`. The result
+  /// must be finite. Called from any thread. Empty: no error. The owner of the scene applies this error; the encoders
   /// do not include it.
   std::function<cv::Point2d(cv::Point2d indicated_mm)> real_place_mm{};
   /// Time base of runs in seconds: the present time of the clock that stamps the camera's frames. Called from any
@@ -81,7 +81,7 @@ class PlateStage {
   struct Motion {
     Change<std::string> plate;
     Change<Mounting> mounting;
-    Change<cv::Point2d> position;  ///< time of travel, without coming to rest
+    Change<cv::Point2d> position;  ///< travel only, without the time to come to rest
     std::optional<PlateRun> run;   ///< the last run, finished or not, until the table moves elsewhere
   };
 
@@ -96,7 +96,7 @@ class PlateStage {
 
   /// Returns the present state, for an emulated camera that observes the movement. Any thread.
   [[nodiscard]] PlateStageState state() const { return state_at(camera_time_s()); }
-  /// Returns the state at another time of the camera's clock, because runs depend on this clock.
+  /// Returns the state at a given time of the camera's clock, because runs depend on this clock.
   [[nodiscard]] PlateStageState state_at(double camera_time_s) const;
   /// Returns "address:port". Any thread.
   [[nodiscard]] std::string endpoint() const { return server_->endpoint(); }

@@ -45,8 +45,8 @@ struct ScpiCommand {
 /// Commands of an instrument. Immutable, shared by its sessions.
 class ScpiLanguage {
  public:
-  /// `identity` is the response to *IDN?. The commands *IDN?, *CLS, *OPC?, SYSTem:ERRor[:NEXT]? and SYSTem:VERSion? are
-  /// built in.
+  /// Creates the language. `identity` is the response to *IDN?. The commands *IDN?, *CLS, *OPC?, SYSTem:ERRor[:NEXT]?
+  /// and SYSTem:VERSion? are built in.
   ScpiLanguage(std::string identity, std::vector<ScpiCommand> commands);
   [[nodiscard]] const std::string& identity() const { return identity_; }
   /// Returns nullptr if no command has this header.

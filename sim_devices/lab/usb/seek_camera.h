@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Emulated Seek Thermal camera: a USB device with the protocol of the Compact and the CompactPRO. PluggedUsbDevice
-// connects it to libusb.
+// connects the camera to libusb.
 #pragma once
 
 #include <cstdint>
@@ -24,14 +24,14 @@ struct SeekCameraConfig {
   int shutter_interval_frames = 0;  ///< frames after which the shutter closes for one frame; 0: only at the start
   int fixed_pattern_counts = 64;    ///< largest offset of a pixel, which the shutter frame shows
   std::vector<cv::Point> dead{};    ///< dead pixels of the picture; sent as zero
-  /// Counter of the first frame after power-up. It wraps soon, so that every longer run tests the unwrapping in the
+  /// Counter of the first frame after power-up. The counter wraps soon, so every longer run tests the unwrapping in the
   /// client.
   std::uint16_t first_counter = 65400;
 };
 
-/// Camera that sends, after its initialisation, a calibration frame, a frame of another kind, a shutter frame, and then
-/// pictures. It exposes only on request, at the earliest one frame period after the previous frame, so a slow client
-/// loses no frames. Methods may be called from any thread.
+/// Camera that sends, after its initialisation, a calibration frame, a frame of a different kind, a shutter frame, and
+/// then pictures. The camera exposes only on request, at the earliest one frame period after the previous frame. A slow
+/// client therefore loses no frames. Methods may be called from any thread.
 class SeekCamera : public UsbDevice {
  public:
   /// Returns the picture of exposure `index`, with counts up to 16383. The index counts every frame since power-up,

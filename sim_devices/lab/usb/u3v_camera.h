@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Emulated USB3 Vision camera: a USB device with GenCP control, bootstrap registers, a GenICam description and a
-// stream. PluggedUsbDevice or a USB/IP server connects it to a host.
+// stream. PluggedUsbDevice or a USB/IP server connects the camera to a host.
 #pragma once
 
 #include <cstdint>
@@ -45,9 +45,9 @@ struct U3vCameraConfig {
   std::map<std::uint64_t, std::uint32_t> false_registers{};
 };
 
-/// Camera that exposes only when the host requests data, at the earliest one frame period after the previous exposure,
-/// so a slow host loses no frames. Its clock advances by one frame period per exposure from power-up: exposure k at an
-/// unchanged rate f has device_time_ns = (k + 1) 10^9 / f. Methods may be called from any thread.
+/// Camera that exposes only when the host requests data, at the earliest one frame period after the previous exposure.
+/// A slow host therefore loses no frames. The camera's clock advances by one frame period per exposure from power-up:
+/// exposure k at an unchanged rate f has device_time_ns = (k + 1) 10^9 / f. Methods may be called from any thread.
 class U3vCamera : public UsbDevice {
  public:
   /// Returns picture number `index`, counted from 0 at power-up over all streams, with the configured geometry. Called

@@ -63,8 +63,8 @@ class UsbDevice {
 };
 
 /// Performs a control transfer for a carrier. The request is passed to the device first. Standard requests (USB 2.0,
-/// section 9.4) that the device does not handle are handled with its descriptors: GET_DESCRIPTOR of device,
-/// configuration and strings, GET_STATUS, GET_CONFIGURATION, GET_INTERFACE; requests that set values are accepted.
+/// section 9.4) that the device does not handle are handled with its descriptors. These are GET_DESCRIPTOR of device,
+/// configuration and strings, GET_STATUS, GET_CONFIGURATION and GET_INTERFACE; requests that set values are accepted.
 /// Returns at most setup.length bytes; no value means STALL.
 [[nodiscard]] std::optional<UsbBytes> usb_control(UsbDevice& device, const UsbSetup& setup,
                                                   std::span<const std::uint8_t> data);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// State of a plugged USB device, shared by its threads and the calls of its clients. Private to them.
+// State of a plugged USB device, shared by its threads and the calls of its clients. Private to these threads and
+// calls.
 #pragma once
 
 #include <chrono>
@@ -64,7 +65,7 @@ struct PluggedUsbDevice::State {
   [[nodiscard]] int claim(UMockdevIoctlClient* client, std::size_t size, unsigned long request);
   void cancel(UMockdevIoctlClient* client, int status);
 
-  /// Creates the handler of ioctl calls. It owns the data of its signals.
+  /// Creates the handler of ioctl calls. The handler owns the data of its signals.
   static UMockdevIoctlBase* handler(const std::shared_ptr<State>& state);
   static int on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, void* data);
   static void on_vanished(UMockdevIoctlBase*, UMockdevIoctlClient* client, void* data);

@@ -18,7 +18,7 @@ namespace todbench {
 /// Differences of a driver from uvcvideo, and its faults.
 struct VideoDriverQuirks {
   enum class Sizes { listed, stepwise, continuous, unlisted };
-  Sizes sizes = Sizes::listed;   ///< unlisted: VIDIOC_ENUM_FRAMESIZES is ENOTTY
+  Sizes sizes = Sizes::listed;   ///< unlisted: VIDIOC_ENUM_FRAMESIZES returns ENOTTY
   bool has_try_format = true;    ///< VIDIOC_TRY_FMT
   bool has_parameters = true;    ///< VIDIOC_G_PARM and VIDIOC_S_PARM
   int row_padding_bytes = 0;     ///< after every row, counted in sizeimage and bytesused
@@ -32,7 +32,7 @@ struct VideoDriverQuirks {
 /// free buffer is lost and causes a gap in the sequence. A second program receives EBUSY while the first program
 /// streams. An unplugged camera returns ENODEV, and udev announces its removal.
 ///
-/// The timestamps of the buffers (of unknown base, in the terms of V4L2) are times of the camera's clock, which
+/// The timestamps of the buffers (of unknown base, in the terms of V4L2) are times of the camera's clock. The clock
 /// advances by one frame period per exposure from power-up: exposure k has the time (k + 1) / rate. The camera exposes
 /// only while a stream is running.
 ///
@@ -67,7 +67,7 @@ class EmulatedV4l2Camera {
   void lose_exposures(unsigned count);
   /// Sends the next frame with only this many bytes and the driver's mark for missing data.
   void truncate_next_frame(std::uint32_t bytes);
-  /// Sends the next frame with only this many bytes and no mark, as drivers do if a transfer ended early although no
+  /// Sends the next frame with only this many bytes and no mark. Drivers do this if a transfer ended early although no
   /// data were lost on the bus.
   void shorten_next_frame(std::uint32_t bytes);
   /// States this size for the next frame, regardless of its true size.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// State of an emulated V4L2 camera, shared by camera thread and driver. Private to them.
+// State of an emulated V4L2 camera, shared by camera thread and driver. Private to thread and driver.
 #pragma once
 
 #include <sys/ioctl.h>
