@@ -95,7 +95,7 @@ Frame frame_from_buffer(ArvBuffer* buffer, const StreamFormat& format) {
   }
   if (!pixels) {
     frame.status = FrameStatus::wrong_size;
-    frame.counts = cv::Mat1w::zeros(format.height, format.width);
+    frame.counts = cv::Mat1w(format.height, format.width, std::uint16_t{0});
     return frame;
   }
   auto counts = decode_pixels(*pixels, {.format = format.pixel_format,
@@ -108,7 +108,7 @@ Frame frame_from_buffer(ArvBuffer* buffer, const StreamFormat& format) {
     return frame;
   }
   if (frame.status == FrameStatus::complete) frame.status = FrameStatus::wrong_size;
-  frame.counts = cv::Mat1w::zeros(format.height, format.width);
+  frame.counts = cv::Mat1w(format.height, format.width, std::uint16_t{0});
   return frame;
 }
 

@@ -189,7 +189,7 @@ Frame SeekSource::frame_of(const SeekArrival& arrival) {
   frame.numbering = place.numbering;
   if (!parsed) {
     frame.status = FrameStatus::incomplete;
-    frame.counts = cv::Mat1w::zeros(info_.height, info_.width);
+    frame.counts = cv::Mat1w(info_.height, info_.width, std::uint16_t{0});
     return frame;
   }
   if (parsed->is(SeekFrameKind::shutter)) {

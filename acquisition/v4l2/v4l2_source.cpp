@@ -300,7 +300,7 @@ void V4l2Source::keep(const VideoBuffer& buffer) {
     frame.counts = picture->counts;
     arrival.telemetry = picture->telemetry;
   } else {
-    frame.counts = cv::Mat1w::zeros(layout_.picture.size());
+    frame.counts = cv::Mat1w(layout_.picture.size(), std::uint16_t{0});
     frame.status = FrameStatus::wrong_size;
   }
   if (picture && picture->begins_in_the_middle) frame.status = FrameStatus::incomplete;
