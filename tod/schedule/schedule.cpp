@@ -69,6 +69,16 @@ class Nesting {
     return all;
   }
 
+  [[nodiscard]] static EvenPhases different_phases(std::size_t groups, int count) {
+    const std::vector<cv::Point2d> all = plastic_points(static_cast<int>(groups) * count);
+    EvenPhases out;
+    for (std::size_t first = 0; first < all.size(); first += static_cast<std::size_t>(count)) {
+      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+      out.shifts.emplace_back(begin, begin + count);
+    }
+    return out;
+  }
+
   /// The shifts of this turn of the outer loops. Mountings have one random start in common, so that their phases
   /// interleave; plates and contrasts have their own. Loops inside the shift share shifts, because a new one would cost
   /// more there than their own change.
@@ -79,7 +89,8 @@ class Nesting {
     auto [phases, is_new] = phases_.try_emplace(plate);
     if (is_new) {
       const std::size_t groups = outside(mounting_dimension) ? options_.mountings.size() : 1;
-      phases->second = even_phases(triangles_together(), groups, options_.phases);
+      phases->second = options_.spread_evenly ? even_phases(triangles_together(), groups, options_.phases)
+                                              : different_phases(groups, options_.phases);
     }
     const RandomStream start = stream_.sub(plate * contrasts_.size() + contrast);
     std::vector<cv::Point2d> out;

@@ -43,9 +43,10 @@ struct ConstantStimuliOptions {
   /// For each of `plates`, the number of `mountings` in which it is shown, counted from the first one; empty: all.
   std::vector<std::size_t> mountings_per_plate{};
   std::vector<double> delta_t_k;
-  int phases = 16;          ///< sub-pixel shifts per plate, mounting and contrast
-  double pixel_mm = 1;      ///< size of a pixel on the plate; shifts are spread over one pixel in x and y
-  double pixel_aspect = 1;  ///< ratio of height to width of a pixel; the width is pixel_mm
+  int phases = 16;            ///< sub-pixel shifts per plate, mounting and contrast
+  double pixel_mm = 1;        ///< size of a pixel on the plate; shifts are spread over one pixel in x and y
+  double pixel_aspect = 1;    ///< ratio of height to width of a pixel; the width is pixel_mm
+  bool spread_evenly = true;  ///< false: shifts only differ, so that presentations can be counted without even_phases()
   /// Time in s for a change of plate, mounting, contrast and shift.
   double change_cost_s[4] = {60, 30, 20, 0.1};
   /// Returns whether the plate is shown in the mounting, by their indices.
