@@ -10,6 +10,7 @@
 #include <numbers>
 #include <set>
 #include <string_view>
+#include <type_traits>
 
 #include "bench/forecast/visit_order.h"
 #include "bench/plan/plan_options.h"
@@ -56,66 +57,6 @@ std::vector<TargetState> with_ramp_ends(const Plan& plan, const RampOptions& ram
       out.push_back(again);
     }
   }
-  return out;
-}
-
-using Strength = std::pair<double, double>;  ///< size of a contrast, and the contrast
-Strength strength_of(double delta_t_k) {
-  return {std::abs(delta_t_k), delta_t_k};
-}
-
-/// Presentations of a set-up in a list, by contrast, the highest first.
-struct ListedSetUp {
-  NumberedSetUp number;
-  std::map<Strength, std::vector<TargetState>, std::greater<>> shown{};
-};
-
-std::vector<ListedSetUp> by_set_ups(const std::vector<TargetState>& listed) {
-  std::vector<ListedSetUp> out;
-  const TargetState* before = nullptr;
-  for (const TargetState& state : listed) {
-    const bool other_plate = before == nullptr || state.plate != before->plate;
-    if (other_plate || state.mounting != before->mounting) {
-      const NumberedSetUp last = out.empty() ? NumberedSetUp{} : out.back().number;
-      const std::size_t plate = other_plate && before != nullptr ? last.plate + 1 : last.plate;
-      out.push_back({.number = {plate, static_cast<std::size_t>(state.mounting)}});
-    }
-    out.back().shown[strength_of(state.delta_t_k)].push_back(state);
-    before = &state;
-  }
-  return out;
-}
-
-/// The presentations of an adaptive schedule that needs these numbers at the contrasts of the plan, from the list of
-/// all set-ups (listed_presentations()): a visit shows the contrasts that need more, and looks at the highest one in a
-/// new set-up.
-std::vector<TargetState> adaptive_visits(const Plan& plan, const std::vector<TargetState>& listed,
-                                         const std::vector<double>& presentations) {
-  const std::vector<double>& contrasts_k = plan.target.delta_t_k;
-  const auto cap = static_cast<std::size_t>(std::max(plan.schedule.max_presentations, 0));
-  std::map<Strength, std::size_t> missing;
-  for (std::size_t i = 0; i < contrasts_k.size(); ++i)
-    missing[strength_of(contrasts_k[i])] =
-        i < presentations.size() ? static_cast<std::size_t>(std::max(0L, std::lround(presentations[i]))) : cap;
-  const std::vector<ListedSetUp> set_ups = by_set_ups(listed);
-  std::vector<NumberedSetUp> numbers;
-  for (const ListedSetUp& one : set_ups) numbers.push_back(one.number);
-  VisitOrder order(plan, numbers);
-  std::vector<TargetState> out;
-  while (out.size() < cap) {
-    const auto open = std::ranges::count_if(missing, [](const auto& one) { return one.second > 0; });
-    if (open == 0) break;
-    const ListedSetUp& set_up = set_ups[order.next(static_cast<int>(open))];
-    for (const auto& [contrast, states] : set_up.shown) {
-      const bool new_set_up =
-          out.empty() || out.back().plate != states[0].plate || out.back().mounting != states[0].mounting;
-      std::size_t& left = missing[contrast];
-      const std::size_t shown = std::min(std::max<std::size_t>(left, new_set_up ? 1 : 0), states.size());
-      out.insert(out.end(), states.begin(), states.begin() + static_cast<std::ptrdiff_t>(shown));
-      left -= std::min(left, shown);
-    }
-  }
-  if (out.size() > cap) out.resize(cap);
   return out;
 }
 
@@ -235,6 +176,7 @@ class Walk {
     const double running = time_.changes_s + time_.frames_s;
     if (plan_.camera.nuc_interval_s > 0)
       time_.corrections_s = (running / plan_.camera.nuc_interval_s + 1) * plan_.camera.nuc_wait_s;
+    time_.short_s = time_.long_s = time_.total_s();
     return time_;
   }
 
@@ -278,6 +220,50 @@ class Walk {
   std::set<std::pair<std::string, Mounting>> set_ups_;
 };
 
+/// Mean of a property over times, rounded if it is a count.
+template <typename Number>
+Number mean_over(const std::vector<BenchTime>& times, const std::function<Number(const BenchTime&)>& property) {
+  double sum = 0;
+  for (const BenchTime& time : times) sum += static_cast<double>(property(time));
+  const double mean = sum / static_cast<double>(times.size());
+  if constexpr (std::is_integral_v<Number>) return static_cast<Number>(std::llround(mean));
+  return static_cast<Number>(mean);
+}
+
+MeasureTime mean_of_measure(const std::vector<BenchTime>& times, std::string_view measure,
+                            const std::function<const MeasureTime&(const BenchTime&)>& of) {
+  return {measure, mean_over<double>(times, [&](const BenchTime& time) { return of(time).changes_s; }),
+          mean_over<std::uint64_t>(times, [&](const BenchTime& time) { return of(time).frames; })};
+}
+
+/// Mean over runs with the same physical measures.
+BenchTime mean_of(const std::vector<BenchTime>& times) {
+  BenchTime out = times.front();
+  for (auto count : {&BenchTime::presentations, &BenchTime::plate_changes, &BenchTime::mounting_changes,
+                     &BenchTime::contrast_changes, &BenchTime::shift_changes, &BenchTime::set_ups, &BenchTime::frames,
+                     &BenchTime::looking_frames})
+    out.*count = mean_over<std::uint64_t>(times, [&](const BenchTime& time) { return time.*count; });
+  for (auto seconds : {&BenchTime::changes_s, &BenchTime::frames_s, &BenchTime::corrections_s})
+    out.*seconds = mean_over<double>(times, [&](const BenchTime& time) { return time.*seconds; });
+  for (auto& [delta_t_k, frames] : out.presentation_frames) {
+    frames = mean_over<std::uint64_t>(times, [&, contrast_k = delta_t_k](const BenchTime& time) {
+      const auto found = time.presentation_frames.find(contrast_k);
+      return found == time.presentation_frames.end() ? 0 : found->second;
+    });
+  }
+  for (std::size_t i = 0; i < out.measures.size(); ++i)
+    out.measures[i] = mean_of_measure(times, out.measures[i].measure,
+                                      [i](const BenchTime& time) -> const MeasureTime& { return time.measures[i]; });
+  out.all_measures =
+      mean_of_measure(times, "", [](const BenchTime& time) -> const MeasureTime& { return time.all_measures; });
+  std::vector<double> totals_s;
+  for (const BenchTime& time : times) totals_s.push_back(time.total_s());
+  std::ranges::sort(totals_s);
+  out.short_s = totals_s[totals_s.size() / 10];
+  out.long_s = totals_s[totals_s.size() - 1 - totals_s.size() / 10];
+  return out;
+}
+
 }  // namespace
 
 std::vector<double> ramp_contrasts_k(const Plan& plan) {
@@ -305,6 +291,7 @@ std::vector<TargetState> listed_presentations(const Plan& plan, const std::vecto
   // Shifts are only counted: a plan without a camera has them too.
   stimuli.pixel_mm = 1;
   stimuli.drawings.clear();
+  stimuli.spread_evenly = false;
   if (plan.schedule.kind == ScheduleKind::ramp) {
     RampOptions ramp = ramp_options(plan, plates, 1);
     ramp.stimuli = stimuli;
@@ -321,23 +308,27 @@ std::vector<TargetState> listed_presentations(const Plan& plan, const std::vecto
 }
 
 BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,
-                     const std::vector<double>& presentations) {
-  return bench_time(plan, plates, listed_presentations(plan, plates), frame_rate_hz, presentations);
+                     const std::vector<AdaptiveRun>& runs) {
+  return bench_time(plan, plates, listed_presentations(plan, plates), frame_rate_hz, runs);
 }
 
-BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, const std::vector<TargetState>& states,
-                     double frame_rate_hz, const std::vector<double>& presentations) {
-  Walk walk(plan);
-  const bool adaptive = plan.schedule.kind == ScheduleKind::adaptive && !states.empty();
-  const std::vector<TargetState> visits =
-      adaptive ? adaptive_visits(plan, states, presentations) : std::vector<TargetState>{};
-  const TargetState* before = nullptr;
-  for (const TargetState& state : adaptive ? visits : states) {
-    walk.present(before, state);
-    before = &state;
-  }
-  if (before != nullptr && !plates.empty()) walk.measure(*before, plates.front().name, plates.front().width_mm);
-  return walk.finished(frame_rate_hz);
+BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, const std::vector<TargetState>& listed,
+                     double frame_rate_hz, const std::vector<AdaptiveRun>& runs) {
+  const auto walk_through = [&](const std::vector<TargetState>& states) {
+    Walk walk(plan);
+    const TargetState* before = nullptr;
+    for (const TargetState& state : states) {
+      walk.present(before, state);
+      before = &state;
+    }
+    if (before != nullptr && !plates.empty()) walk.measure(*before, plates.front().name, plates.front().width_mm);
+    return walk.finished(frame_rate_hz);
+  };
+  if (plan.schedule.kind != ScheduleKind::adaptive || listed.empty()) return walk_through(listed);
+  std::vector<BenchTime> times;
+  for (const std::vector<TargetState>& states : visited_presentations(plan, listed, runs))
+    times.push_back(walk_through(states));
+  return mean_of(times);
 }
 
 std::string resume_remark(const Plan& plan, double bench_s) {

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "bench/forecast/visit_order.h"
 #include "bench/plan/plan.h"
 
 namespace todbench {
@@ -40,20 +41,22 @@ struct BenchTime {
   MeasureTime all_measures{};           ///< sum over the measures, with the change of the target before the first
   double warm_up_s = 0;                 ///< part of changes_s: shortest warm-up before the run
   double corrections_s = 0;             ///< waiting time after commanded corrections of the camera
+  /// Total times that one in ten simulated runs of an adaptive schedule stays below and one in ten exceeds; equal to
+  /// total_s() for other schedules.
+  double short_s = 0, long_s = 0;
   [[nodiscard]] double total_s() const { return changes_s + frames_s + corrections_s; }
 };
 
-/// Computes the bench time of a plan whose frames per presentation are chosen (with_frames()). `presentations`: the
-/// number that an adaptive schedule is expected to show at each contrast of the plan; empty: its cap. Each visit to a
-/// set-up shows the contrasts that need more presentations, and the highest contrast at least once. A schedule that
-/// lists its presentations ignores the numbers. For a target of kind scene only counts are computed, no times, because
-/// only the processor limits this target.
+/// Computes the bench time of a plan whose frames per presentation are chosen (with_frames()). `runs`: for an adaptive
+/// schedule, the simulated runs over which the result is the mean, with rounded counts; empty: one run to its cap. The
+/// highest contrast is shown at least once in each new set-up. A schedule that lists its presentations ignores `runs`.
+/// For a target of kind scene only counts are computed, no times, because only the processor limits this target.
 [[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates, double frame_rate_hz,
-                                   const std::vector<double>& presentations);
+                                   const std::vector<AdaptiveRun>& runs);
 /// Computes the bench time for presentations that are already listed.
 [[nodiscard]] BenchTime bench_time(const Plan& plan, const std::vector<TargetPlate>& plates,
                                    const std::vector<TargetState>& listed, double frame_rate_hz,
-                                   const std::vector<double>& presentations);
+                                   const std::vector<AdaptiveRun>& runs);
 
 /// Returns a sentence if a run of this bench time records no frames, so that `measure --resume` could not continue it
 /// after an interruption; empty for runs of less than ten minutes and for a simulated scene.
@@ -65,7 +68,7 @@ struct BenchTime {
 
 /// Returns the presentations of a constant schedule for bench_time(). For an adaptive schedule, returns the
 /// presentations of its visits, because the schedule stays in a set-up for a whole visit. The result does not depend on
-/// the frames per presentation. Choosing their phases takes 20 ms for the demonstration.
+/// the frames per presentation. The shifts only differ from each other (ConstantStimuliOptions::spread_evenly).
 [[nodiscard]] std::vector<TargetState> listed_presentations(const Plan& plan, const std::vector<TargetPlate>& plates);
 
 }  // namespace todbench

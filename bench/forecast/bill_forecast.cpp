@@ -150,9 +150,14 @@ Result<AccuracyBill> bill_forecast(const Plan& asked, const ExperimentInputs& in
   const Plan plan = as_measured(with_frames(asked, inputs));
   TODBENCH_TRY(const auto prediction, predict_plan(plan, inputs));
   const double frame_rate_hz = inputs.sensor.frame_rate_hz;
-  const BenchTime time = expected_bench_time(plan, inputs, prediction.contrasts);
+  const BenchTime time = expected_bench_time(plan, inputs, prediction);
   bill.total_s = time.total_s() - time.warm_up_s;
   if (frame_rate_hz > 0) add_rows(bill, time, frame_rate_hz, prediction.contrasts);
+  if (plan.schedule.kind == ScheduleKind::adaptive)
+    bill.sentences.push_back(
+        fmt::format("The times of this adaptive schedule are means; eight of ten simulated runs take between {:.0f} s "
+                    "and {:.0f} s.",
+                    time.short_s - time.warm_up_s, time.long_s - time.warm_up_s));
   TODBENCH_TRY(const auto floors, floors_ln(plan, prediction));
   if (std::ranges::none_of(floors, [](double floor) { return floor > 0; }))
     bill.sentences.emplace_back(no_budget_sentence);

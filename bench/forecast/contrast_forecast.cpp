@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <map>
 #include <numbers>
 #include <utility>
 
 #include "acquisition/base/distributions.h"
-#include "acquisition/base/rng.h"
 #include "acquisition/base/try.h"
 #include "bench/forecast/graded_precision.h"
 #include "bench/forecast/limit_forecast.h"
+#include "bench/forecast/visit_order.h"
 #include "bench/plan/plan_options.h"
 #include "tod/measurement/contrast_error.h"
 #include "tod/plate/test_pattern.h"
@@ -33,28 +32,15 @@ struct PixelNoise {
   double pixel_k = 0, row_k = 0, column_k = 0;
 };
 
-/// Contrast of one frame of a plate: its variance, and the number of large triangles.
-struct FrameContrast {
-  double variance = 0, references = 0;
-};
-
-FrameContrast frame_contrast(const TargetPlate& plate, double pixels_per_mm, double min_size_px,
-                             const PixelNoise& noise) {
+/// Variance of the contrast of one triangle in one frame.
+double triangle_variance(double size_px, const PixelNoise& noise) {
   constexpr double of_median = std::numbers::pi / 2;
-  FrameContrast out;
-  for (const PlateTriangle& t : plate.triangles) {
-    const double size_px = t.size_mm * pixels_per_mm;
-    if (size_px < min_size_px) continue;
-    const double inner_px = inner_part(size_px) * size_px, height = 3 * triangle_centroid_to_base;
-    const double perimeter = 6 / height;  // an equilateral triangle of unit area has the height h, the side 2 / h
-    const double inside = std::max(1.0, inner_px * inner_px), ring = contrast_ring_width_px * perimeter * size_px;
-    out.variance += of_median * std::pow(noise.pixel_k, 2) * (1 / inside + 1 / ring) +
-                    std::pow(noise.row_k, 2) / std::max(1.0, height * inner_px) +
-                    std::pow(noise.column_k, 2) / std::max(1.0, 2 / height * inner_px);
-    out.references += 1;
-  }
-  if (out.references > 0) out.variance /= out.references * out.references;
-  return out;
+  const double inner_px = inner_part(size_px) * size_px, height = 3 * triangle_centroid_to_base;
+  const double perimeter = 6 / height;  // an equilateral triangle of unit area has the height h, the side 2 / h
+  const double inside = std::max(1.0, inner_px * inner_px), ring = contrast_ring_width_px * perimeter * size_px;
+  return of_median * std::pow(noise.pixel_k, 2) * (1 / inside + 1 / ring) +
+         std::pow(noise.row_k, 2) / std::max(1.0, height * inner_px) +
+         std::pow(noise.column_k, 2) / std::max(1.0, 2 / height * inner_px);
 }
 
 /// Number of independent frames in a mean of successive ones.
@@ -70,33 +56,38 @@ struct ContrastScatterForecast {
   double of_places = 1, of_set_ups = 1;
 };
 
-ContrastScatterForecast scatter_of(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
+ContrastScatterForecast scatter_of(const std::vector<std::vector<TriangleNoise>>& noise,
                                    const std::vector<int>& looks) {
-  const SensorSpec& sensor = inputs.sensor;
-  const double pixels_per_mm = 1 / (plan.target.distance_m * sensor.ifov_mrad());
-  double variance = 0, set_ups = 0, places = 0;
-  std::size_t first = 0;
-  for (std::size_t i = 0; i < inputs.plates.size(); ++i) {
-    const auto mountings = static_cast<std::size_t>(mountings_of(plan.target, i));
-    for (std::size_t k = first; k < first + mountings && k < looks.size(); ++k) {
-      if (looks[k] == 0) continue;
-      const double frames =
-          static_cast<double>(looks[k]) *
-          (has_own_contrasts(plan) ? chosen_answers(plan, sensor, delta_t_k).frames : plan.measurement.contrast_frames);
-      const double temporal = 1 / std::sqrt(independent_frames(frames, sensor.noise_correlation));
-      const FrameContrast one = frame_contrast(inputs.plates[i], pixels_per_mm, plan.measurement.min_reference_px,
-                                               {.pixel_k = std::hypot(temporal * sensor.netd_k, sensor.fixed_pattern_k),
-                                                .row_k = temporal * sensor.row_noise_k,
-                                                .column_k = temporal * sensor.column_noise_k});
-      variance += one.variance;
-      places += one.references;
-      set_ups += 1;
-    }
-    first += mountings;
+  double variance = 0, measured = 0, places = 0;
+  for (std::size_t i = 0; i < noise.size() && i < looks.size(); ++i) {
+    if (noise[i].empty() || looks[i] == 0) continue;
+    const auto triangles = static_cast<double>(noise[i].size());
+    for (const TriangleNoise& one : noise[i])
+      variance += (one.temporal_k * one.temporal_k / looks[i] + one.fixed_k * one.fixed_k) / (triangles * triangles);
+    measured += 1;
+    places += triangles;
   }
-  if (set_ups == 0) return {};
-  return {std::sqrt(variance) / set_ups, std::max(1.0, places - 1), std::max(1.0, set_ups - 1)};
+  if (measured == 0) return {};
+  return {std::sqrt(variance) / measured, std::max(1.0, places - 1), std::max(1.0, measured - 1)};
 }
+
+/// Random number of the detectors under a triangle, the same for triangles at one position (contrast_error()).
+class DetectorsAt {
+ public:
+  explicit DetectorsAt(const RandomStream& stream) : stream_(stream) {}
+  [[nodiscard]] double operator()(const TriangleNoise& triangle) {
+    const auto near = std::ranges::find_if(known_, [&](const TriangleNoise& other) {
+      return cv::norm(triangle.place_px - other.place_px) < 0.5 * std::min(triangle.size_px, other.size_px);
+    });
+    const auto index = static_cast<std::uint64_t>(near - known_.begin());
+    if (near == known_.end()) known_.push_back(triangle);
+    return stream_.normal(index);
+  }
+
+ private:
+  RandomStream stream_;
+  std::vector<TriangleNoise> known_;
+};
 
 /// Adds the scatter of the contrast, `slope` times its relative standard error, to a prediction: half-widths are added
 /// in quadrature (join_uncertainty()), and 19 of 20 runs stay below the factor of the effective degrees of freedom
@@ -119,42 +110,17 @@ void join(ContrastPrediction& point, const ContrastScatterForecast& scatter, dou
   point.contrast_half_width = once_in_a_set_up ? of_contrast : 0;
 }
 
-/// Half-width of the 95 % interval of a contrast over its standard error, as an adaptive schedule takes it from the
-/// scatter over set-ups and places: two fifths of 201 simulated runs of white noise are below. A run ends at its first
-/// set-up with a narrow interval, so that more than these have ended there. Every second set-up has its triangles at
-/// the same places.
-double stopping_half_width(int set_ups, int triangles) {
-  thread_local std::map<std::pair<int, int>, double> known;
-  const auto [found, is_new] = known.try_emplace({set_ups, triangles}, 0);
-  if (!is_new) return found->second;
-  constexpr int runs = 201;
-  const double noise_k = std::sqrt(static_cast<double>(set_ups * triangles));  // so that the mean has the error 1
-  const RandomStream stream(1, "contrast_forecast");
-  std::vector<double> widths;
-  for (std::uint64_t run = 0, drawn = 0; run < runs; ++run) {
-    std::vector<ContrastMeasurement> measured;
-    for (int i = 0; i < set_ups; ++i) {
-      ContrastMeasurement one;
-      for (int k = 0; k < triangles; ++k) {
-        one.references.push_back({.value = noise_k * static_cast<double>(stream.normal(drawn++)),
-                                  .place_px = {10.0 * k, 10.0 * (i % 2)},
-                                  .size_px = 5,
-                                  .noise = noise_k});
-        one.delta_t_k += one.references.back().value / triangles;
-      }
-      measured.push_back(std::move(one));
-    }
-    const ContrastError error = at_least_the_noise(contrast_error(measured).value_or(ContrastError{.noise_k = 1}));
-    widths.push_back(error.standard_error_k * distribution::quantile_above(0.025, error.degrees_of_freedom));
-  }
-  std::ranges::sort(widths);
-  return found->second = widths[2 * runs / 5];
-}
-
 }  // namespace
 
 double contrast_variance_per_pixel(const TargetPlate& plate, double pixels_per_mm, double min_size_px) {
-  return frame_contrast(plate, pixels_per_mm, min_size_px, {.pixel_k = 1}).variance;
+  double variance = 0, references = 0;
+  for (const PlateTriangle& t : plate.triangles) {
+    const double size_px = t.size_mm * pixels_per_mm;
+    if (size_px < min_size_px) continue;
+    variance += triangle_variance(size_px, {.pixel_k = 1});
+    references += 1;
+  }
+  return references > 0 ? variance / (references * references) : 0;
 }
 
 std::vector<double> expected_contrast_effects(const std::vector<ContrastPrediction>& contrasts) {
@@ -163,12 +129,56 @@ std::vector<double> expected_contrast_effects(const std::vector<ContrastPredicti
   return contrast_effects(expected_curve(expected));
 }
 
-double contrast_half_width(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
-                           const std::vector<int>& looks, double slope) {
-  const ContrastScatterForecast scatter = scatter_of(plan, inputs, delta_t_k, looks);
-  const auto set_ups = static_cast<int>(std::lround(scatter.of_set_ups)) + 1;
-  const auto triangles = static_cast<int>(std::lround((scatter.of_places + 1) / set_ups));
-  return stopping_half_width(set_ups, triangles) * slope * scatter.standard_error_k / std::abs(delta_t_k);
+std::vector<std::vector<TriangleNoise>> contrast_noise(const Plan& plan, const ExperimentInputs& inputs,
+                                                       double delta_t_k) {
+  const SensorSpec& sensor = inputs.sensor;
+  const double pixels_per_mm = 1 / (plan.target.distance_m * sensor.ifov_mrad());
+  const double frames =
+      has_own_contrasts(plan) ? chosen_answers(plan, sensor, delta_t_k).frames : plan.measurement.contrast_frames;
+  const double temporal = 1 / std::sqrt(independent_frames(frames, sensor.noise_correlation));
+  const PixelNoise changing{.pixel_k = temporal * sensor.netd_k,
+                            .row_k = temporal * sensor.row_noise_k,
+                            .column_k = temporal * sensor.column_noise_k};
+  std::vector<std::vector<TriangleNoise>> out;
+  for (const NumberedSetUp& set_up : numbered_set_ups(plan, inputs.plates.size())) {
+    std::vector<TriangleNoise>& triangles = out.emplace_back();
+    for (const PlateTriangle& t :
+         mounted(inputs.plates[set_up.plate], plan.target.mountings[set_up.mounting]).triangles) {
+      const double size_px = t.size_mm * pixels_per_mm;
+      if (size_px < plan.measurement.min_reference_px) continue;
+      triangles.push_back({.place_px = pixels_per_mm * t.position_mm,
+                           .size_px = size_px,
+                           .temporal_k = std::sqrt(triangle_variance(size_px, changing)),
+                           .fixed_k = std::sqrt(triangle_variance(size_px, {.pixel_k = sensor.fixed_pattern_k}))});
+    }
+  }
+  return out;
+}
+
+double simulated_contrast_half_width(const std::vector<std::vector<TriangleNoise>>& noise,
+                                     const std::vector<int>& looks, double delta_t_k, double slope,
+                                     const RandomStream& run) {
+  std::vector<ContrastMeasurement> measured;
+  DetectorsAt detectors(run.sub(0));
+  for (std::size_t i = 0; i < noise.size() && i < looks.size(); ++i) {
+    for (int look = 0; look < looks[i] && !noise[i].empty(); ++look) {
+      const RandomStream frames = run.sub(1 + i).sub(static_cast<std::uint64_t>(look));
+      ContrastMeasurement& one = measured.emplace_back();
+      for (const TriangleNoise& triangle : noise[i]) {
+        one.references.push_back({.value = triangle.fixed_k * detectors(triangle) +
+                                           triangle.temporal_k * frames.normal(one.references.size()),
+                                  .place_px = triangle.place_px,
+                                  .size_px = triangle.size_px,
+                                  .noise = std::hypot(triangle.fixed_k, triangle.temporal_k)});
+        one.delta_t_k += one.references.back().value / static_cast<double>(noise[i].size());
+      }
+    }
+  }
+  const auto seen = contrast_error(measured);
+  if (!seen) return 0;
+  const ContrastError error = at_least_the_noise(*seen);
+  return distribution::quantile_above(0.025, error.degrees_of_freedom) * slope * error.standard_error_k /
+         std::abs(delta_t_k);
 }
 
 Result<std::optional<int>> enough_contrast_frames(Plan plan, const ExperimentInputs& inputs,
@@ -198,7 +208,8 @@ void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Pla
   const std::vector<double> slopes = expected_contrast_effects(contrasts);
   for (std::size_t i = 0; i < contrasts.size() && i < looks.size(); ++i) {
     ContrastPrediction& point = contrasts[i];
-    join(point, scatter_of(plan, inputs, point.delta_t_k, looks[i]), slopes[i], !has_own_contrasts(plan));
+    join(point, scatter_of(contrast_noise(plan, inputs, point.delta_t_k), looks[i]), slopes[i],
+         !has_own_contrasts(plan));
   }
 }
 

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <functional>
+#include <opencv2/core/types.hpp>
 #include <optional>
 #include <vector>
 
+#include "acquisition/base/rng.h"
 #include "bench/forecast/prediction.h"
 
 namespace todbench {
@@ -19,16 +21,30 @@ namespace todbench {
 /// curve.
 [[nodiscard]] std::vector<double> expected_contrast_effects(const std::vector<ContrastPrediction>& contrasts);
 
-/// Returns the half-width of ln S75 due to the scatter of a measured contrast alone. It is the value that
-/// AdaptiveSchedule computes after the set-up in which half of the runs end. `looks`: number of measurements of the
-/// contrast in each set-up. A measurement averages `contrast_frames`, or the frames of a presentation if the contrast
-/// is measured in each presentation. The noise comes from the file of the sensor: fixed pattern, and temporal noise
-/// averaged over these frames.
-[[nodiscard]] double contrast_half_width(const Plan& plan, const ExperimentInputs& inputs, double delta_t_k,
-                                         const std::vector<int>& looks, double slope);
+/// Noise of the contrast of a large triangle.
+struct TriangleNoise {
+  cv::Point2d place_px;  ///< position in the picture
+  double size_px = 0;
+  double temporal_k = 0;  ///< standard deviation of one measurement
+  double fixed_k = 0;  ///< standard deviation due to the fixed pattern, the same in every measurement at this position
+};
+
+/// Returns the noise of the large triangles in each set-up of a plan (numbered_set_ups()). A measurement averages
+/// `contrast_frames`, or the frames of a presentation if the contrast is measured in each presentation. The noise comes
+/// from the file of the sensor.
+[[nodiscard]] std::vector<std::vector<TriangleNoise>> contrast_noise(const Plan& plan, const ExperimentInputs& inputs,
+                                                                     double delta_t_k);
+
+/// Returns the half-width of ln S75 due to the measured contrast in one simulated run, as AdaptiveSchedule computes it
+/// from contrast_error(). `noise`: of each set-up. `looks`: number of measurements in each set-up. `slope`: d ln S75 /
+/// d ln contrast. `run`: white noise of the triangles. 0 if the measurements have only one triangle.
+[[nodiscard]] double simulated_contrast_half_width(const std::vector<std::vector<TriangleNoise>>& noise,
+                                                   const std::vector<int>& looks, double delta_t_k, double slope,
+                                                   const RandomStream& run);
 
 /// Adds the scatter of the measured contrast to the predictions of a plan with a camera, as join_contrast_errors()
-/// (tod/psychometric/contrast_slope.h) adds it to the curve. `looks`: as in contrast_half_width(), for each contrast.
+/// (tod/psychometric/contrast_slope.h) adds it to the curve. `looks`: number of measurements of each contrast
+/// in each set-up.
 void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Plan& plan, const ExperimentInputs& inputs,
                            const std::vector<std::vector<int>>& looks);
 

@@ -236,9 +236,9 @@ double smallest_half_width_ln(const JoinedUncertainty& stated) {
   return stated.half_width(upper_tail) * std::sqrt(std::pow(1 + matters, 2) - 1);
 }
 
-double laboratory_time(Plan plan, const ExperimentInputs& inputs, const std::vector<double>& presentations) {
+double laboratory_time(Plan plan, const ExperimentInputs& inputs, const std::vector<AdaptiveRun>& runs) {
   if (plan.target.kind == TargetKind::scene) plan.target.kind = TargetKind::scpi;
-  return bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, presentations).total_s();
+  return bench_time(plan, inputs.plates, inputs.sensor.frame_rate_hz, runs).total_s();
 }
 
 Result<std::vector<double>> floors_ln(const Plan& plan, const PlanPrediction& prediction) {
@@ -279,8 +279,7 @@ Result<std::vector<DecisionForecast>> decision_forecasts(const Plan& asked, cons
   }
   for (std::size_t i = 0; i < plans.size(); ++i) {
     TODBENCH_TRY(const auto prediction, predict_plan(plans[i], inputs));
-    const auto presentations = expected_presentations(plans[i], inputs.plates, prediction.contrasts);
-    const double bench_s = laboratory_time(plans[i], inputs, presentations);
+    const double bench_s = laboratory_time(plans[i], inputs, prediction.runs);
     for (DecisionForecast& forecast : forecasts) {
       const ContrastPrediction* contrast = expected_at(prediction, forecast.delta_t_k);
       if (contrast == nullptr) continue;

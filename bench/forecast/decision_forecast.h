@@ -101,8 +101,7 @@ struct DecisionForecast {
 };
 
 /// Returns the bench time in s. For a simulated scene, the change times of the plan are used, as if it ran on a bench.
-[[nodiscard]] double laboratory_time(Plan plan, const ExperimentInputs& inputs,
-                                     const std::vector<double>& presentations);
+[[nodiscard]] double laboratory_time(Plan plan, const ExperimentInputs& inputs, const std::vector<AdaptiveRun>& runs);
 
 /// Forecasts every limit on acuity whose contrast has a threshold, for the plan and for its variants. Variants of an
 /// adaptive schedule have a quarter to four times the half-width. Variants of a ramp have a quarter to four times the

@@ -115,7 +115,7 @@ Result<PricedDesign> priced(Plan plan, const ExperimentInputs& inputs) {
   PricedDesign design{.plan = std::move(plan)};
   Plan laboratory = design.plan;
   if (laboratory.target.kind == TargetKind::scene) laboratory.target.kind = TargetKind::scpi;
-  const BenchTime time = expected_bench_time(laboratory, inputs, prediction.contrasts);
+  const BenchTime time = expected_bench_time(laboratory, inputs, prediction);
   design.bench_s = time.total_s();
   design.changes_s = time.changes_s;
   design.set_ups = static_cast<int>(time.set_ups);

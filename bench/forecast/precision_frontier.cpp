@@ -31,8 +31,8 @@ Result<double> computing_s(const Plan& plan, const ExperimentInputs& inputs, std
   return plan.camera.id.empty() ? time.simulation_s : time.measuring_s;
 }
 
-double bench_s(const Plan& plan, const ExperimentInputs& inputs, const std::vector<ContrastPrediction>& contrasts) {
-  return plan.camera.id.empty() ? 0 : expected_bench_time(plan, inputs, contrasts).total_s();
+double bench_s(const Plan& plan, const ExperimentInputs& inputs, const PlanPrediction& prediction) {
+  return plan.camera.id.empty() ? 0 : expected_bench_time(plan, inputs, prediction).total_s();
 }
 
 double mean_of(const std::vector<int>& frames) {
@@ -124,7 +124,7 @@ Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const 
   }
   TODBENCH_TRY(const auto expected, predict_plan(as_measured(plan), inputs));
   const double own_s = figures.predicted_measurement_s.value_or(*figures.predicted_s);
-  const double own_bench_s = bench_s(with_frames(plan, inputs), inputs, expected.contrasts);
+  const double own_bench_s = bench_s(with_frames(plan, inputs), inputs, expected);
   TODBENCH_TRY(const auto times, computing_times(plan, inputs, own, own_s - own_bench_s, stop));
 
   std::vector<PrecisionChoice> choices;
@@ -133,7 +133,7 @@ Result<std::vector<PrecisionChoice>> precision_frontier(const Plan& plan, const 
     TODBENCH_TRY(auto prediction, predict_plan(as_measured(other), inputs));
     PrecisionChoice choice{.answers = answers, .frames = count};
     choice.planned = ramp || (planned.kind == answers && (answers == AnswerKind::binary || own == count));
-    choice.bench_s = choice.planned ? own_bench_s : bench_s(other, inputs, prediction.contrasts);
+    choice.bench_s = choice.planned ? own_bench_s : bench_s(other, inputs, prediction);
     choice.seconds = choice.planned ? own_s : computing + choice.bench_s;
     choice.half_width_percent = prediction.figures.predicted_uncertainty_percent;
     choice.contrasts = std::move(prediction.contrasts);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/forecast/bench_time.h"
 #include "bench/plan/plan.h"
 #include "bench/session/json_output.h"
 #include "bench/twin/experiment_inputs.h"
@@ -20,7 +21,7 @@ struct ContrastPrediction {
   /// % of runs do not exceed. For an adaptive schedule, the requested half-width, or the half-width that its cap
   /// allows. Empty: not identified.
   std::optional<double> uncertainty_percent;
-  double trials = 0;  ///< number of trials of the simulation
+  double trials = 0;  ///< number of trials of the simulation; for an adaptive schedule, the mean of simulated runs
   /// Expected standard error of ln S75, without the margin for unlucky runs that `uncertainty_percent` includes; 0: not
   /// identified.
   double se_ln_s75 = 0;
@@ -30,19 +31,18 @@ struct ContrastPrediction {
   /// Half-width of ln S75 due to the scatter of the measured contrast alone; more presentations do not reduce it. It is
   /// part of `uncertainty_percent`.
   double contrast_half_width = 0;
-  /// Half-width at which an adaptive schedule is expected to stop, in percent; empty for a different schedule, or if it
-  /// is not expected to stop before its cap.
+  /// Half-width at which an adaptive schedule stops, in percent; empty for a different schedule, or if less than half
+  /// of the simulated runs stop before its cap.
   std::optional<double> stopped_at_percent{};
   /// Standard error of the ln ratio of camera and twin if both are measured at common phases, with the same margin as
   /// `uncertainty_percent`; empty: the plan contains no paired comparison.
   std::optional<double> paired_se_ln_ratio{};
 };
 
-struct BenchTime;
-
 struct PlanPrediction {
   PlanFigures figures;  ///< uncertainty: the largest over the contrasts; without times
   std::vector<ContrastPrediction> contrasts;
+  std::vector<AdaptiveRun> runs{};    ///< simulated runs of an adaptive schedule (adaptive_forecast.h)
   std::vector<std::string> warnings;  ///< one sentence each
 };
 
@@ -71,14 +71,8 @@ struct PlanPrediction {
 /// Returns the number of triangles of all plates.
 [[nodiscard]] double triangles_of(const std::vector<TargetPlate>& plates);
 
-/// Returns the presentations that an adaptive schedule is expected to show at each of these contrasts; empty for a
-/// schedule that lists its presentations.
-[[nodiscard]] std::vector<double> expected_presentations(const Plan& plan, const std::vector<TargetPlate>& plates,
-                                                         const std::vector<ContrastPrediction>& contrasts);
-
-/// Returns the bench time (bench/forecast/bench_time.h) of a plan with the presentations that these contrasts of the
-/// camera are expected to need.
+/// Returns the bench time of a plan whose camera has this prediction; the mean of its runs for an adaptive schedule.
 [[nodiscard]] BenchTime expected_bench_time(const Plan& plan, const ExperimentInputs& inputs,
-                                            const std::vector<ContrastPrediction>& contrasts);
+                                            const PlanPrediction& prediction);
 
 }  // namespace todbench

@@ -23,6 +23,12 @@ std::optional<double> rescaled_percent(std::optional<double> uncertainty_percent
   return 100 * std::expm1(std::log1p(*uncertainty_percent / 100) * std::sqrt(static_cast<double>(from) / phases));
 }
 
+/// Whether visits of an adaptive schedule of one plan are also visits of the other plan.
+bool same_visits(const Plan& plan, const Plan& other) {
+  return plan.target.delta_t_k.size() == other.target.delta_t_k.size() &&
+         set_ups_of(plan.target) == set_ups_of(other.target);
+}
+
 const ContrastPrediction* at(const std::vector<ContrastPrediction>& contrasts, double delta_t_k) {
   const auto found = std::find_if(contrasts.begin(), contrasts.end(),
                                   [&](const ContrastPrediction& c) { return c.delta_t_k == delta_t_k; });
@@ -94,6 +100,7 @@ Result<PlanForecast> forecast(const LoadedPlan& loaded, const std::vector<Expect
         !timed && timed.error().code == ErrorCode::interrupted)
       return tl::unexpected(timed.error());
     out.twin = std::move(prediction->contrasts);
+    out.runs = std::move(prediction->runs);
     out.twin_s = prediction->figures.predicted_s;
   } else {
     out.problem = prediction.error().message;
@@ -112,7 +119,10 @@ Result<PlanForecast> forecast(const LoadedPlan& loaded, const std::vector<Expect
   // Limits of the simulation do not apply to the camera.
   camera.simulation.accuracy = "draft";
   TODBENCH_TRY(inputs.accuracy, accuracy_of(camera));
-  if (auto seen = predict_plan(camera, inputs)) out.camera = std::move(seen->contrasts);
+  if (auto seen = predict_plan(camera, inputs)) {
+    out.camera = std::move(seen->contrasts);
+    out.runs = std::move(seen->runs);
+  }
   out.by_frames = half_widths_by_frames(camera, inputs);
   return out;
 }
@@ -130,12 +140,13 @@ PlanPreview outlook(const Plan& plan, const std::vector<TargetPlate>& plates, co
                     double frame_rate_hz) {
   PlanPreview out;
   const bool adaptive = plan.schedule.kind == ScheduleKind::adaptive;
-  const auto expected = seen != nullptr ? expected_presentations(plan, plates, seen->camera) : std::vector<double>{};
+  const std::vector<AdaptiveRun> runs =
+      seen != nullptr && same_visits(plan, seen->plan) ? seen->runs : std::vector<AdaptiveRun>{};
   Plan timed = plan;
   if (seen != nullptr && plan.schedule == seen->plan.schedule && plan.target.delta_t_k == seen->plan.target.delta_t_k)
     timed.schedule.frames_per_presentation = seen->frames;
   const std::vector<TargetState> listed = listed_presentations(timed, plates);
-  const BenchTime bench = bench_time(timed, plates, listed, frame_rate_hz, expected);
+  const BenchTime bench = bench_time(timed, plates, listed, frame_rate_hz, runs);
   out.presentations = bench.presentations;
   out.bench_s = bench.total_s();
   const double per_presentation = plates.empty() ? 0 : triangles_of(plates) / static_cast<double>(plates.size());
@@ -159,7 +170,7 @@ PlanPreview outlook(const Plan& plan, const std::vector<TargetPlate>& plates, co
     for (const auto& [frames, percent] : seen->by_frames) {
       timed.schedule.frames_per_presentation = {frames};
       const auto here = rescaled_percent(percent, seen->plan.target.phases, plan.target.phases);
-      const double seconds = bench_time(timed, plates, listed, frame_rate_hz, expected).total_s();
+      const double seconds = bench_time(timed, plates, listed, frame_rate_hz, runs).total_s();
       if (here) out.by_frames.emplace_back(seconds, *here);
     }
   }

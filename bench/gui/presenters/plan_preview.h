@@ -39,6 +39,7 @@ struct PlanForecast {
   std::vector<std::string> warnings;     ///< one sentence each
   std::vector<ContrastPrediction> twin;  ///< prediction with the phases of the simulation; empty: see `problem`
   std::vector<ContrastPrediction> camera;  ///< prediction with the phases of the target
+  std::vector<AdaptiveRun> runs{};         ///< simulated runs of an adaptive schedule with the camera
   /// Largest half-width of the camera with 1, 2, 4 and 8 frames per presentation; empty for binary answers.
   std::vector<std::pair<int, double>> by_frames;
   std::optional<double> twin_s;        ///< time of the simulation on one core

@@ -153,13 +153,39 @@ TEST(BenchTime, OfAnAdaptivePlanGrowsWithWhatIsExpectedUpToItsCap) {
   plan.schedule.max_presentations = 500;
   const LoadedPlan loaded = LoadedPlan::load(plan).value();
   plan.target.phases = 6;
-  const auto expecting = [&](const std::vector<double>& each) { return bench_time(plan, loaded.plates(), 50, each); };
+  const auto of_visits = [&](std::size_t number) {
+    AdaptiveRun run;
+    for (std::size_t i = 0; i < number; ++i) run.push_back({.set_up = i % 8, .presentations = {6, 6, 6}});
+    return bench_time(plan, loaded.plates(), 50, {run});
+  };
 
-  EXPECT_EQ(expecting({12, 12, 12}).presentations, 36u);
-  EXPECT_EQ(expecting({12, 12, 12}).mounting_changes, 2u) << "two set-ups, six presentations of each contrast";
-  EXPECT_LT(expecting({12, 12, 12}).total_s(), expecting({18, 18, 18}).total_s());
-  EXPECT_EQ(expecting({5000, 5000, 5000}).presentations, 500u);
-  EXPECT_EQ(expecting({}).presentations, 500u);
+  EXPECT_EQ(of_visits(2).presentations, 36u);
+  EXPECT_EQ(of_visits(2).mounting_changes, 2u);
+  EXPECT_LT(of_visits(2).total_s(), of_visits(3).total_s());
+  EXPECT_EQ(of_visits(100).presentations, 500u);
+  EXPECT_EQ(bench_time(plan, loaded.plates(), 50, {}).presentations, 500u);
+}
+
+TEST(BenchTime, OfAnAdaptivePlanIsTheMeanOfItsRunsWithARange) {
+  Plan plan;
+  plan.target.kind = TargetKind::prompt;
+  plan.schedule.kind = ScheduleKind::adaptive;
+  plan.target.phases = 6;
+  plan.measures.noise = true;
+  const LoadedPlan loaded = LoadedPlan::load(plan).value();
+  const AdaptiveRun once{{.set_up = 0, .presentations = {6, 6, 6}}};
+  const AdaptiveRun twice{{.set_up = 0, .presentations = {6, 6, 6}}, {.set_up = 1, .presentations = {0, 0, 5}}};
+  const auto of = [&](const std::vector<AdaptiveRun>& runs) { return bench_time(plan, loaded.plates(), 50, runs); };
+  const BenchTime few = of({once}), many = of({twice});
+
+  const BenchTime both = of({once, twice});
+
+  EXPECT_NEAR(both.total_s(), (few.total_s() + many.total_s()) / 2, 1e-9);
+  EXPECT_EQ(both.presentations, (few.presentations + many.presentations + 1) / 2);
+  EXPECT_NEAR(both.measures.at(0).changes_s, few.measures.at(0).changes_s, 1e-9);
+  EXPECT_NEAR(both.short_s, few.total_s(), 1e-9);
+  EXPECT_NEAR(both.long_s, many.total_s(), 1e-9);
+  EXPECT_EQ(few.short_s, few.long_s);
 }
 
 TEST(BenchTime, OfAnAdaptivePlanLooksAtTheHighestContrastInEverySetUpThatAnotherContrastNeeds) {
@@ -170,10 +196,15 @@ TEST(BenchTime, OfAnAdaptivePlanLooksAtTheHighestContrastInEverySetUpThatAnother
   plan.target.delta_t_k = {10, 1};
   const LoadedPlan loaded = LoadedPlan::load(plan).value();
 
-  const BenchTime time = bench_time(plan, loaded.plates(), 50, {8, 30});
+  // Set-ups a0, a1, a1 again, a2 and a2 again.
+  const AdaptiveRun run{{.set_up = 0, .presentations = {6, 6}},
+                        {.set_up = 1, .presentations = {2, 6}},
+                        {.set_up = 1, .presentations = {0, 6}},
+                        {.set_up = 2, .presentations = {0, 6}},
+                        {.set_up = 2, .presentations = {0, 6}}};
 
-  // Set-ups a0, a1, a1 again, a2 and a2 again: without a change of the mounting a second visit counts 42 s,
-  // a first visit with it 51 s.
+  const BenchTime time = bench_time(plan, loaded.plates(), 50, {run});
+
   EXPECT_EQ(time.mounting_changes, 3u);
   EXPECT_EQ(time.presentations, 8u + 1u + 30u) << "one look at 10 K in the third set-up";
   EXPECT_EQ(time.contrast_changes, 6u);

@@ -61,7 +61,7 @@ Plan adaptive_plan() {
 TEST(BillForecast, StatesTheSetUpsThatAnAdaptiveScheduleIsExpectedToVisit) {
   const SearchedBench bench = bench_of(adaptive_plan());
   const Plan plan = as_measured(with_frames(bench.loaded.plan(), bench.inputs));
-  const BenchTime time = expected_bench_time(plan, bench.inputs, predict_plan(plan, bench.inputs).value().contrasts);
+  const BenchTime time = expected_bench_time(plan, bench.inputs, predict_plan(plan, bench.inputs).value());
 
   const BillRow changes = bill_forecast(bench.loaded.plan(), bench.inputs).value().rows.at(0);
 
