@@ -16,8 +16,9 @@ namespace todbench {
 /// Returns a Landolt ring with the gap at the right: width of gap and stroke 1, outer diameter 5, centre at the origin.
 [[nodiscard]] Polygon landolt_ring();
 
-/// A shape in four orientations, 90 degrees apart. The score of an orientation is <H F_i, c H F + z>, with the noise of
-/// hvs-2. Immutable, thread-safe.
+/// A shape in four orientations, 90 degrees apart. The score of orientation i is <H F_i, c H F + z>. F_i is the
+/// spectrum of the shape in orientation i, F that of the shown shape, H the filter of the eye (EyeFilter), c the
+/// contrast and z the noise of hvs-2. Immutable, thread-safe.
 class NakedEyeShape {
  public:
   /// Prepares a polygon of any size. In the other functions, the size of the shape is the square root of its area.

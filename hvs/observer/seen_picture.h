@@ -8,9 +8,9 @@
 
 namespace todbench {
 
-/// Filters pictures with display and H. Each value of the result is the mean over the area of a displayed sample. The
-/// noise of the eye is independent between these means and has a standard deviation of 1 / (side of a sample in
-/// degrees). Immutable, thread-safe.
+/// Filters pictures with the display and with the filter H of the eye (EyeFilter). Each value of the result is the mean
+/// over the area of a displayed sample. The noise of the eye is independent between these means and has a standard
+/// deviation of 1 / (side of a sample in degrees). Immutable, thread-safe.
 class SeenPicture {
  public:
   /// Prepares the filter for square pictures of `side` samples. Precondition: an eye with a display.

@@ -18,10 +18,10 @@
 
 namespace todbench {
 
-/// Access of a module to other computers, and to this computer over its network.
+/// Network access of a module.
 enum class ModuleNetwork {
-  cut,  ///< own network and message queues, no other sockets (bubblewrap); same as `ours` if bubblewrap cannot run
-  ours,
+  cut,   ///< own network and message queues, no other sockets (bubblewrap); same as `ours` if bubblewrap cannot run
+  ours,  ///< the network of this program
 };
 /// Returns whether a network can be cut here: bubblewrap is installed and works. The test is made once.
 [[nodiscard]] bool can_cut_network();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MRTD of a simulated camera, judged by the template observer: four bars with the method of the triangles.
+// MRTD of a simulated camera: the template observer judges four bars with the same method as the triangles.
 #pragma once
 
 #include <cstdint>
@@ -67,9 +67,10 @@ struct VirtualMrtdPoint {
 };
 
 /// Returns one point per frequency. Noise of camera and observer is as in identify(). Both intervals have independent
-/// noise and fixed pattern. Patterns are in one of 8 x 2 phases (eight across the bars). The proportion is over all
-/// pairs of draws. Errors: `invalid_input` (no frequency above 0, a pattern with fewer than 4 or more than 400 samples
-/// on a side, no noise, counts coarser than the noise), `interrupted`.
+/// noise and fixed pattern. Patterns are in one of 8 x 2 phases (eight across the bars). The proportion
+/// correct is computed over all pairs of a draw of one interval and a draw of the other interval. Errors:
+/// `invalid_input` (no frequency above 0, a pattern with fewer than 4 or more than 400 samples on a side, no noise,
+/// counts coarser than the noise), `interrupted`.
 [[nodiscard]] Result<std::vector<VirtualMrtdPoint>> virtual_mrtd(const VirtualMrtdTask& task);
 
 /// Pictures of virtual_mrtd() for use with a different observer. Immutable, thread-safe.

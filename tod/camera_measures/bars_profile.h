@@ -24,8 +24,8 @@ class BarsProfile {
 };
 
 /// Least-squares fit of ground level and line spread to samples at fixed positions. Some components of the line spread
-/// have no effect on the profile of four bars. A small penalty on the third differences of the line spread (1e-6 of the
-/// mean diagonal) determines these components. Immutable, thread-safe.
+/// have no effect on the profile of four bars. A small penalty on the third differences of the line spread (weight:
+/// 1e-6 of the mean diagonal element of the normal matrix) determines these components. Immutable, thread-safe.
 class BarsFit {
  public:
   /// Prepares the fit. `places`: positions of the samples. Positions, bar width, middle and knots have the same unit.

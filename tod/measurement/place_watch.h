@@ -41,15 +41,15 @@ struct PlateSeen {
   double amplitude = 0;                ///< common contrast of the large triangles, in the unit of window_kelvin()
   /// Standard error of the amplitude. 0: not measured.
   double amplitude_error = 0;
-  /// Share of the variance of amplitude_error that is due to fixed pattern and is therefore the same in the next
+  /// Share of the square of amplitude_error that is due to fixed pattern and is therefore the same in the next
   /// presentation.
   double shared = 1;
 };
 
 /// Measures the position of the plate in each presentation. Within a set-up, positions are averaged over the last 1, 2,
-/// 4, ... presentations until the standard error is 0.03 px. The mean replaces the requested position if two conditions
-/// are met. The mean has this standard error, or the smallest standard error possible in the set-up; and it differs
-/// from the requested position by more than 0.05 px and more than six standard errors. Otherwise the requested position
+/// 4, ... presentations until the standard error is 0.03 px. If no mean reaches this
+/// error, the mean over the most presentations is used. The mean replaces the requested position if it differs from the
+/// requested position by more than 0.05 px and more than six standard errors. Otherwise the requested position
 /// is used unchanged. For a plate at the requested position, six standard errors on two axes are exceeded once in 7e7
 /// measurements. One thread at a time.
 class PlaceWatch {

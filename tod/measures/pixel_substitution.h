@@ -7,9 +7,9 @@
 
 namespace todbench {
 
-/// Limits of substituted pixels.
+/// Limits of the test for substituted pixels.
 struct SubstitutionRules {
-  double chance = 1e-3;       ///< probability, over all pixels, that a live pixel is classified as substituted
+  double chance = 1e-3;       ///< probability that at least one live pixel of the picture is classified as substituted
   double unit_per_count = 0;  ///< step of rounding in the frames, in their unit; 0: not known
 };
 

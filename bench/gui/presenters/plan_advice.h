@@ -21,9 +21,9 @@ inline constexpr const char* no_display_sentence =
 /// `invalid_input` without a display or with modules, those of the loaders and of propose_viewing().
 [[nodiscard]] Result<QString> viewing_advice(const Plan& plan, const std::stop_token& stop);
 
-/// Returns a table of the costs of acuity_limits() at each contrast of the plan, as HTML. Uses the observer of the
-/// plan, or hvs-2 if the plan has a display and its observer has no eye. Errors: those of the loaders and of
-/// acuity_limits().
+/// Returns an HTML table with the cost of each limiting factor (acuity_limits()) at each contrast of the plan. Uses the
+/// observer of the plan, or hvs-2 if the plan has a display and its observer has no eye. Errors: those of the loaders
+/// and of acuity_limits().
 [[nodiscard]] Result<QString> limits_advice(const Plan& plan, const std::stop_token& stop);
 
 /// Estimate on its own thread. Used in the thread of the window.

@@ -24,14 +24,14 @@ struct ExpectedThreshold {
   bool operator==(const ExpectedThreshold&) const = default;
 };
 
-/// Refines the thresholds of `inputs` by direct estimates, as `todbench plan` does. Takes some seconds. Errors:
+/// Refines the thresholds of `inputs` by direct estimates, as `todbench plan` does. Takes a few seconds. Errors:
 /// `interrupted`.
 [[nodiscard]] Result<std::vector<ExpectedThreshold>> expected_thresholds(const Plan& plan, ExperimentInputs inputs,
                                                                          std::stop_token stop);
 /// Returns the thresholds as a curve without intervals.
 [[nodiscard]] TodCurve as_curve(const std::vector<ExpectedThreshold>& expected);
 
-/// Results of predict_plan() and predict_times(), which take some tenths of a second.
+/// Results of predict_plan() and predict_times(), which take a few tenths of a second.
 struct PlanForecast {
   Plan plan;                             ///< the predicted plan
   std::vector<int> frames;               ///< frames per presentation by with_frames(), if the plan does not state them
@@ -70,7 +70,7 @@ struct PlanPreview {
   [[nodiscard]] std::optional<double> uncertainty_percent() const;
 };
 
-/// Computes the outlook, fast enough to follow a slider. If the plan and the forecast have different numbers of phases,
+/// Computes the preview, fast enough to follow a slider. If the plan and the forecast have different numbers of phases,
 /// ln(1 + uncertainty) is scaled with the square root of forecast phases / plan phases, except for an adaptive
 /// schedule. The time of the simulation is scaled with plan phases / forecast phases. If `seen` is null, only counts
 /// and bench time are computed.
@@ -98,8 +98,8 @@ struct AccuracyPrice {
                                                          double frame_rate_hz, EffectPlanner& planner,
                                                          const std::stop_token& stop);
 
-/// Returns the plot of uncertainty against bench time and time of the simulation, with points for the same
-/// presentations with 1, 2, 4 and 8 frames. A square marks the plan itself.
+/// Returns the plot of uncertainty against bench time and time of the simulation. Further points show the
+/// presentations of the plan with 1, 2, 4 and 8 frames each. A square marks the plan itself.
 [[nodiscard]] Plot accuracy_plot(const std::vector<AccuracyPrice>& prices, const PlanPreview& now);
 
 }  // namespace todbench

@@ -35,7 +35,7 @@ struct ModelRegisters {
   std::uint32_t test_pattern = 0;
   std::uint32_t noise_reduction = 0;
   std::uint32_t nuc_mode = 0, nuc_action = 0, nuc_action_long = 0;
-  std::uint32_t nuc_mode_automatic = 0;  ///< value of nuc_mode
+  std::uint32_t nuc_mode_automatic = 0;  ///< not an address: value of the register nuc_mode for automatic corrections
   std::uint32_t sensor_temperature = 0;  ///< raw/10 degrees Celsius
   std::uint32_t chunk_mode = 0;
   std::uint32_t largest_count = 0;

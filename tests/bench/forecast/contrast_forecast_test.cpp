@@ -109,6 +109,11 @@ TEST(PredictPlan, PromisesNothingAtAContrastBeyondTheRangeOfTheSensor) {
   EXPECT_TRUE(cut.contrasts[1].uncertainty_percent);
   ASSERT_EQ(cut.warnings.size(), whole.warnings.size() + 1);
   EXPECT_THAT(cut.warnings.back(), ::testing::HasSubstr("310 K in a surround of 300 K leaves the range"));
+
+  plan.schedule.kind = ScheduleKind::adaptive;
+  const PlanPrediction adaptive = predict_plan(as_measured(plan), inputs).value();
+  EXPECT_FALSE(adaptive.contrasts[0].uncertainty_percent) << "the schedule goes on to its cap";
+  EXPECT_TRUE(adaptive.contrasts[1].stopped_at_percent);
 }
 
 }  // namespace
