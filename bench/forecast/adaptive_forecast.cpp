@@ -35,7 +35,9 @@ struct ContrastCourse {
   std::vector<int> shown{};  ///< presentations in each set-up
   std::vector<int> looks{};  ///< measurements of the contrast in each set-up
   int presentations = 0;
-  double contrast_half_width = 0;  ///< of ln S75, due to the measured contrast
+  std::vector<double> deviations{};  ///< sum of the drawn deviations in each set-up, in standard deviations
+  double squares = 0;                ///< sum of squared deviations of the presentations
+  double contrast_half_width = 0;    ///< of ln S75, due to the measured contrast
   bool settled = false;
   bool stopped = false;       ///< settled because its interval is narrow enough
   bool needs_set_up = false;  ///< as in ContrastProgress
@@ -47,39 +49,40 @@ struct Course {
   int presentations = 0;
 };
 
+/// Draws the deviations of the next presentation. The mean of a set-up changes with every presentation.
+void draw_presentation(ContrastCourse& course, std::size_t set_up) {
+  const RandomStream stream = course.stream.sub(1);
+  course.squares += std::pow(stream.normal(static_cast<std::uint64_t>(course.presentations)), 2);
+  course.deviations[set_up] += stream.sub(set_up).normal(static_cast<std::uint64_t>(course.shown[set_up]));
+  ++course.shown[set_up];
+  ++course.presentations;
+}
+
 /// Ratio of the estimated to the expected standard error over set-ups.
-double ratio_over_set_ups(const ContrastCourse& course, const RandomStream& stream) {
-  std::vector<double> deviations;
-  double sum = 0, squares = 0;
+double ratio_over_set_ups(const ContrastCourse& course) {
+  double count = 0, sum = 0, squares = 0;
   for (std::size_t i = 0; i < course.shown.size(); ++i) {
     if (course.shown[i] == 0) continue;
-    // The mean of a set-up changes with every presentation.
-    double of_set_up = 0;
-    for (int k = 0; k < course.shown[i]; ++k) of_set_up += stream.sub(i).normal(static_cast<std::uint64_t>(k));
-    deviations.push_back(of_set_up / std::sqrt(course.shown[i]));
-    sum += deviations.back();
+    const double z = course.deviations[i] / std::sqrt(course.shown[i]);
+    count += 1;
+    sum += z;
+    squares += z * z;
   }
-  const auto count = static_cast<double>(deviations.size());
-  for (const double z : deviations) squares += std::pow(z - sum / count, 2);
-  return std::sqrt(squares / (count - 1));
+  return std::sqrt(std::max(0.0, squares - sum * sum / count) / (count - 1));
 }
 
 /// The same over presentations. The largest of three variances is used (clustered_variance.h), which scatters less than
-/// each of them: 0.43 / sqrt(presentations) in 80 runs of ten designs with 10 to 25 presentations.
-double ratio_over_presentations(const ContrastCourse& course, const RandomStream& stream) {
+/// each of them: 0.43 / sqrt(presentations) in eight runs of a plan of 2 % with 10 to 25 presentations.
+double ratio_over_presentations(const ContrastCourse& course) {
   constexpr double of_largest = 0.61;  // 0.43 over the 1 / sqrt(2 presentations) of chi-square
-  double mean = 0;
-  for (int k = 0; k < course.presentations; ++k)
-    mean += std::pow(stream.normal(static_cast<std::uint64_t>(k)), 2) / course.presentations;
-  return std::sqrt(1 + of_largest * (mean - 1));
+  return std::sqrt(1 + of_largest * (course.squares / course.presentations - 1));
 }
 
 double error_ratio(const ContrastCourse& course, const ContrastPrediction& expected, AnswerKind answers) {
-  const RandomStream stream = course.stream.sub(1);
-  if (answers == AnswerKind::binary) return std::exp(scatter_of_binary_error * stream.normal(0));
+  if (answers == AnswerKind::binary) return std::exp(scatter_of_binary_error * course.stream.sub(1).normal(0));
   const auto set_ups = std::ranges::count_if(course.shown, [](int n) { return n > 0; });
   const bool over_set_ups = *expected.degrees_of_freedom == static_cast<double>(set_ups - 1);  // graded_freedom()
-  return over_set_ups ? ratio_over_set_ups(course, stream) : ratio_over_presentations(course, stream);
+  return over_set_ups ? ratio_over_set_ups(course) : ratio_over_presentations(course);
 }
 
 class Simulation {
@@ -102,7 +105,8 @@ class Simulation {
     for (std::size_t c = 0; c < contrasts_.size(); ++c)
       course.contrasts.push_back({.stream = stream.sub(c),
                                   .shown = std::vector<int>(set_ups_.size()),
-                                  .looks = std::vector<int>(set_ups_.size())});
+                                  .looks = std::vector<int>(set_ups_.size()),
+                                  .deviations = std::vector<double>(set_ups_.size())});
     VisitOrder order(plan_, set_ups_);
     while (course.presentations < plan_.schedule.max_presentations) {
       const auto open = std::ranges::count(course.contrasts, false, &ContrastCourse::settled);
@@ -136,8 +140,7 @@ class Simulation {
       int& shown = course.visits.back().presentations[c];
       while (shown < phases && !contrast.settled && course.presentations < plan_.schedule.max_presentations) {
         ++shown;
-        ++contrast.shown[set_up];
-        ++contrast.presentations;
+        draw_presentation(contrast, set_up);
         ++course.presentations;
         judge(contrast, c, visits);
       }
@@ -220,7 +223,7 @@ AdaptiveForecast adaptive_forecast(const std::vector<ContrastPrediction>& consta
     point.trials = std::round(presentations / simulated * per_presentation);
     if (2 * stopped >= static_cast<int>(simulated))
       point.uncertainty_percent = point.stopped_at_percent = 100 * std::expm1(plan.schedule.half_width_percent / 100);
-    out.contrasts.push_back(std::move(point));
+    out.contrasts.push_back(point);
     out.looks.push_back(course.looks);
   }
   for (Course& course : courses) out.runs.push_back(std::move(course.visits));

@@ -52,7 +52,8 @@ struct PlanPrediction {
 /// Binary answers use one frame.
 [[nodiscard]] Plan with_frames(Plan plan, const ExperimentInputs& inputs);
 
-/// Predicts a plan in two milliseconds, without simulation or reading of files. `inputs`: inputs of the plan
+/// Predicts a plan in two milliseconds (an adaptive schedule in less than a tenth of a second), without simulation or
+/// reading of files. `inputs`: inputs of the plan
 /// (experiment_inputs()). Errors: `invalid_input` (the tolerance cannot be met within the hard caps; the message states
 /// the possible tolerance and its time). A contrast without a threshold has no uncertainty, and the plan then has no
 /// uncertainty either; a warning names the contrast.
