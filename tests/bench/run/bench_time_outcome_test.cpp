@@ -230,6 +230,7 @@ struct AdaptiveRow {
   double half_width_percent;
   int phases = 6;
   std::vector<double> delta_t_k{16.9, 1.93, 0.23};
+  AnswersChoice answers = AnswersChoice::automatic;
   int short_seeds = 0;
 };
 
@@ -246,7 +247,8 @@ std::vector<AdaptiveRow> adaptive_rows() {
            .short_seeds = 1},
           {.name = "adaptive, 2 %, 10 and 1 K", .half_width_percent = 2, .delta_t_k = {10, 1}},
           {.name = "adaptive, 3 %, six contrasts", .half_width_percent = 3, .delta_t_k = {16.9, 8, 3, 1, 0.5, 0.2}},
-          {.name = "adaptive, 4 %, 0.5 K alone", .half_width_percent = 4, .delta_t_k = {0.5}}};
+          {.name = "adaptive, 4 %, 0.5 K alone", .half_width_percent = 4, .delta_t_k = {0.5}},
+          {.name = "adaptive, 8 %, binary answers", .half_width_percent = 8, .answers = AnswersChoice::binary}};
 }
 
 // Single runs differ by whole set-ups. The tolerance is 3.3 standard errors of the mean by the scatter of the simulated
@@ -259,6 +261,7 @@ TEST(BenchTimeOutcome, OfAnAdaptiveScheduleIsTheForecast) {
     plan.schedule.half_width_percent = row.half_width_percent;
     plan.target.phases = row.phases;
     plan.target.delta_t_k = row.delta_t_k;
+    plan.schedule.answers = row.answers;
     const int seeds = asked != nullptr ? std::atoi(asked) : row.short_seeds;
     if (seeds == 0) continue;
     const Outcomes found = outcomes(row.name, plan, seeds);
