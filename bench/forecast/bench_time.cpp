@@ -10,7 +10,6 @@
 #include <numbers>
 #include <set>
 #include <string_view>
-#include <type_traits>
 
 #include "bench/forecast/visit_order.h"
 #include "bench/plan/plan_options.h"
@@ -220,20 +219,24 @@ class Walk {
   std::set<std::pair<std::string, Mounting>> set_ups_;
 };
 
-/// Mean of a property over times, rounded if it is a count.
-template <typename Number>
-Number mean_over(const std::vector<BenchTime>& times, const std::function<Number(const BenchTime&)>& property) {
+/// Mean of a property over runs.
+template <typename Property>
+double mean_over(const std::vector<BenchTime>& times, const Property& property) {
   double sum = 0;
   for (const BenchTime& time : times) sum += static_cast<double>(property(time));
-  const double mean = sum / static_cast<double>(times.size());
-  if constexpr (std::is_integral_v<Number>) return static_cast<Number>(std::llround(mean));
-  return static_cast<Number>(mean);
+  return sum / static_cast<double>(times.size());
 }
 
-MeasureTime mean_of_measure(const std::vector<BenchTime>& times, std::string_view measure,
-                            const std::function<const MeasureTime&(const BenchTime&)>& of) {
-  return {measure, mean_over<double>(times, [&](const BenchTime& time) { return of(time).changes_s; }),
-          mean_over<std::uint64_t>(times, [&](const BenchTime& time) { return of(time).frames; })};
+template <typename Property>
+std::uint64_t mean_count(const std::vector<BenchTime>& times, const Property& property) {
+  return static_cast<std::uint64_t>(std::llround(mean_over(times, property)));
+}
+
+/// Sets the means of a physical measure that `of` finds in the bench time of a run.
+template <typename Of>
+void set_means(MeasureTime& measure, const std::vector<BenchTime>& times, const Of& of) {
+  measure.changes_s = mean_over(times, [&](const BenchTime& time) { return of(time).changes_s; });
+  measure.frames = mean_count(times, [&](const BenchTime& time) { return of(time).frames; });
 }
 
 /// Mean over runs with the same physical measures.
@@ -242,20 +245,18 @@ BenchTime mean_of(const std::vector<BenchTime>& times) {
   for (auto count : {&BenchTime::presentations, &BenchTime::plate_changes, &BenchTime::mounting_changes,
                      &BenchTime::contrast_changes, &BenchTime::shift_changes, &BenchTime::set_ups, &BenchTime::frames,
                      &BenchTime::looking_frames})
-    out.*count = mean_over<std::uint64_t>(times, [&](const BenchTime& time) { return time.*count; });
+    out.*count = mean_count(times, [&](const BenchTime& time) { return time.*count; });
   for (auto seconds : {&BenchTime::changes_s, &BenchTime::frames_s, &BenchTime::corrections_s})
-    out.*seconds = mean_over<double>(times, [&](const BenchTime& time) { return time.*seconds; });
+    out.*seconds = mean_over(times, [&](const BenchTime& time) { return time.*seconds; });
   for (auto& [delta_t_k, frames] : out.presentation_frames) {
-    frames = mean_over<std::uint64_t>(times, [&, contrast_k = delta_t_k](const BenchTime& time) {
+    frames = mean_count(times, [contrast_k = delta_t_k](const BenchTime& time) {
       const auto found = time.presentation_frames.find(contrast_k);
       return found == time.presentation_frames.end() ? 0 : found->second;
     });
   }
   for (std::size_t i = 0; i < out.measures.size(); ++i)
-    out.measures[i] = mean_of_measure(times, out.measures[i].measure,
-                                      [i](const BenchTime& time) -> const MeasureTime& { return time.measures[i]; });
-  out.all_measures =
-      mean_of_measure(times, "", [](const BenchTime& time) -> const MeasureTime& { return time.all_measures; });
+    set_means(out.measures[i], times, [i](const BenchTime& time) { return time.measures[i]; });
+  set_means(out.all_measures, times, [](const BenchTime& time) { return time.all_measures; });
   std::vector<double> totals_s;
   for (const BenchTime& time : times) totals_s.push_back(time.total_s());
   std::ranges::sort(totals_s);

@@ -71,24 +71,6 @@ ContrastScatterForecast scatter_of(const std::vector<std::vector<TriangleNoise>>
   return {std::sqrt(variance) / measured, std::max(1.0, places - 1), std::max(1.0, measured - 1)};
 }
 
-/// Random number of the detectors under a triangle, the same for triangles at one position (contrast_error()).
-class DetectorsAt {
- public:
-  explicit DetectorsAt(const RandomStream& stream) : stream_(stream) {}
-  [[nodiscard]] double operator()(const TriangleNoise& triangle) {
-    const auto near = std::ranges::find_if(known_, [&](const TriangleNoise& other) {
-      return cv::norm(triangle.place_px - other.place_px) < 0.5 * std::min(triangle.size_px, other.size_px);
-    });
-    const auto index = static_cast<std::uint64_t>(near - known_.begin());
-    if (near == known_.end()) known_.push_back(triangle);
-    return stream_.normal(index);
-  }
-
- private:
-  RandomStream stream_;
-  std::vector<TriangleNoise> known_;
-};
-
 /// Adds the scatter of the contrast, `slope` times its relative standard error, to a prediction: half-widths are added
 /// in quadrature (join_uncertainty()), and 19 of 20 runs stay below the factor of the effective degrees of freedom
 /// (Welch 1947, Satterthwaite 1946).
@@ -159,18 +141,20 @@ double simulated_contrast_half_width(const std::vector<std::vector<TriangleNoise
                                      const std::vector<int>& looks, double delta_t_k, double slope,
                                      const RandomStream& run) {
   std::vector<ContrastMeasurement> measured;
-  DetectorsAt detectors(run.sub(0));
+  std::vector<ReferenceTriangle> places;
+  const RandomStream detectors = run.sub(0);
   for (std::size_t i = 0; i < noise.size() && i < looks.size(); ++i) {
     for (int look = 0; look < looks[i] && !noise[i].empty(); ++look) {
       const RandomStream frames = run.sub(1 + i).sub(static_cast<std::uint64_t>(look));
       ContrastMeasurement& one = measured.emplace_back();
       for (const TriangleNoise& triangle : noise[i]) {
-        one.references.push_back({.value = triangle.fixed_k * detectors(triangle) +
-                                           triangle.temporal_k * frames.normal(one.references.size()),
-                                  .place_px = triangle.place_px,
-                                  .size_px = triangle.size_px,
-                                  .noise = std::hypot(triangle.fixed_k, triangle.temporal_k)});
-        one.delta_t_k += one.references.back().value / static_cast<double>(noise[i].size());
+        ReferenceTriangle reference{.place_px = triangle.place_px,
+                                    .size_px = triangle.size_px,
+                                    .noise = std::hypot(triangle.fixed_k, triangle.temporal_k)};
+        reference.value = triangle.fixed_k * detectors.normal(place_of(reference, places)) +
+                          triangle.temporal_k * frames.normal(one.references.size());
+        one.delta_t_k += reference.value / static_cast<double>(noise[i].size());
+        one.references.push_back(reference);
       }
     }
   }

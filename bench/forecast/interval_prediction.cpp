@@ -133,7 +133,8 @@ std::vector<double> set_up_information(const Plan& plan, const ExperimentInputs&
   return out;
 }
 
-GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook) {
+GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inputs, const ContrastOutlook& outlook,
+                                  const std::vector<double>& information) {
   const NoiseShares shares = noise_shares(inputs, outlook);
   const auto set_ups = static_cast<int>(set_ups_of(plan.target));
   // A simulated scene changes between two frames.
@@ -145,7 +146,7 @@ GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inpu
           .frames = chosen_answers(plan, inputs.sensor, outlook.delta_t_k).frames,
           .draws = MeasurementOptions::graded_draws,
           .set_ups = set_ups,
-          .informative_set_ups = effective_number(set_up_information(plan, inputs, outlook)),
+          .informative_set_ups = effective_number(information),
           .presentations = set_ups * plan.simulation.phases,
           .noise_correlation = inputs.sensor.noise_correlation,
           .frames_between = change_s * inputs.sensor.frame_rate_hz};
@@ -156,10 +157,10 @@ std::optional<AnswerForecast> answer_forecast(const Plan& plan, const Experiment
   if (outlook == inputs.outlooks.end()) return std::nullopt;
   const auto binary_se = binary_error(plan, inputs, *outlook);
   if (!binary_se) return std::nullopt;
-  return AnswerForecast{.outlook = *outlook,
-                        .information = set_up_information(plan, inputs, *outlook),
-                        .all = graded_design(plan, inputs, *outlook),
-                        .binary_se = *binary_se};
+  AnswerForecast forecast{.outlook = *outlook, .information = set_up_information(plan, inputs, *outlook)};
+  forecast.all = graded_design(plan, inputs, *outlook, forecast.information);
+  forecast.binary_se = *binary_se;
+  return forecast;
 }
 
 void predict_interval(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,

@@ -15,7 +15,7 @@ namespace todbench {
 struct AnswerForecast {
   ContrastOutlook outlook;
   std::vector<double> information;  ///< of a presentation of each set-up, plate by plate, in any unit
-  GradedDesignFigures all;          ///< graded_design()
+  GradedDesignFigures all{};        ///< graded_design()
   double binary_se = 0;             ///< standard error of ln S75 of binary answers of that design
 };
 
@@ -24,9 +24,9 @@ struct AnswerForecast {
                                                      const ContrastOutlook& outlook);
 
 /// Returns the figures of a design that shows every set-up in each phase of the simulation, with the frames of the
-/// plan.
+/// plan. `information`: set_up_information() of the plan.
 [[nodiscard]] GradedDesignFigures graded_design(const Plan& plan, const ExperimentInputs& inputs,
-                                                const ContrastOutlook& outlook);
+                                                const ContrastOutlook& outlook, const std::vector<double>& information);
 
 /// Returns the forecast at one contrast of a plan whose frames per presentation are chosen (with_frames()). Empty if no
 /// threshold is expected, or if the sizes of the plates do not identify it.

@@ -78,7 +78,7 @@ std::vector<ContrastInformation> informations_of(const Plan& plan, const Experim
     if (std::ranges::find(plan.target.delta_t_k, outlook.delta_t_k) == plan.target.delta_t_k.end()) continue;
     const std::vector<double> of_set_ups = set_up_information(plan, inputs, outlook);
     const double sum = std::accumulate(of_set_ups.begin(), of_set_ups.end(), 0.0);
-    const double ratio = graded_variance_ratio(graded_design(plan, inputs, outlook));
+    const double ratio = graded_variance_ratio(graded_design(plan, inputs, outlook, of_set_ups));
     if (sum > 0 && ratio > 0) out.push_back({outlook.delta_t_k, sum, ratio});
   }
   return out;
@@ -149,7 +149,8 @@ Plan with_frames(Plan plan, const ExperimentInputs& inputs) {
     chosen.push_back(chosen_answers(plan, inputs.sensor, delta_t_k).frames);
     const auto outlook = std::ranges::find(inputs.outlooks, delta_t_k, &ContrastOutlook::delta_t_k);
     if (frames_at(plan, delta_t_k) == 0 && single_s > 0 && rate_hz > 0 && outlook != inputs.outlooks.end())
-      chosen.back() = cheapest_frames(graded_design(single, inputs, *outlook), single_s, 1 / rate_hz);
+      chosen.back() = cheapest_frames(
+          graded_design(single, inputs, *outlook, set_up_information(single, inputs, *outlook)), single_s, 1 / rate_hz);
   }
   const bool same = std::ranges::all_of(chosen, [&](int n) { return n == chosen[0]; });
   frames = same && !chosen.empty() ? std::vector<int>{chosen[0]} : chosen;

@@ -14,16 +14,6 @@ struct Share {
   double value = 0;
 };
 
-/// Index of the triangle's place among the known ones; adds a place if it is at none.
-std::size_t place_of(const ReferenceTriangle& triangle, std::vector<ReferenceTriangle>& known) {
-  const auto near = std::ranges::find_if(known, [&](const ReferenceTriangle& other) {
-    return cv::norm(triangle.place_px - other.place_px) < 0.5 * std::min(triangle.size_px, other.size_px);
-  });
-  if (near != known.end()) return static_cast<std::size_t>(near - known.begin());
-  known.push_back(triangle);
-  return known.size() - 1;
-}
-
 struct OneWay {
   double variance = 0;
   double clusters = 0;
@@ -39,6 +29,15 @@ OneWay one_way(const std::vector<Share>& shares, std::size_t Share::*cluster) {
 }
 
 }  // namespace
+
+std::size_t place_of(const ReferenceTriangle& triangle, std::vector<ReferenceTriangle>& known) {
+  const auto near = std::ranges::find_if(known, [&](const ReferenceTriangle& other) {
+    return cv::norm(triangle.place_px - other.place_px) < 0.5 * std::min(triangle.size_px, other.size_px);
+  });
+  if (near != known.end()) return static_cast<std::size_t>(near - known.begin());
+  known.push_back(triangle);
+  return known.size() - 1;
+}
 
 std::optional<ContrastError> contrast_error(std::span<const ContrastMeasurement> measurements) {
   double mean = 0;

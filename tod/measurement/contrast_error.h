@@ -2,6 +2,7 @@
 // Standard error of a contrast that was measured in several set-ups by several triangles.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <span>
@@ -20,12 +21,16 @@ struct ContrastMeasurement {
   std::vector<ReferenceTriangle> references;  ///< each with its contrast in kelvin
 };
 
+/// Returns the index of the position of a triangle in `known`, and adds the triangle if its position is not known.
+/// Triangles whose centroids are closer than half their size have the same position, because different mountings and
+/// plates may image them onto the same detectors.
+[[nodiscard]] std::size_t place_of(const ReferenceTriangle& triangle, std::vector<ReferenceTriangle>& known);
+
 /// Returns the standard error of the mean over measurements of one contrast. Two kinds of errors do not cancel in this
 /// mean: errors common to the triangles of a set-up, and errors of the detectors at one position in the picture (fixed
-/// pattern). Set-ups and positions are therefore treated as two-way clusters. The variance is V_set_up + V_place -
-/// V_triangle (Cameron, Gelbach and Miller 2011), at least V_set_up and at least V_place. Triangles whose centroids are
-/// closer than half their size are treated as one position, because different mountings and plates may image them onto
-/// the same detectors. Empty with fewer than two set-ups and fewer than two positions.
+/// pattern). Set-ups and positions (place_of()) are therefore treated as two-way clusters. The variance is V_set_up +
+/// V_place - V_triangle (Cameron, Gelbach and Miller 2011), at least V_set_up and at least V_place. Empty with fewer
+/// than two set-ups and fewer than two positions.
 [[nodiscard]] std::optional<ContrastError> contrast_error(std::span<const ContrastMeasurement> measurements);
 
 /// Returns contrast_error() for each set contrast, at least the error due to noise. Contrasts whose error cannot be

@@ -56,7 +56,7 @@ struct PresentedContrast {
   int presentations = 0;
 };
 
-/// Results of the averages of a run, for the tests of constancy.
+/// Values for the tests of constancy, computed from averages over the pictures of a run.
 struct RunConstancy {
   /// One element for each average, in the order of the run.
   std::vector<PictureNoise> noise;
