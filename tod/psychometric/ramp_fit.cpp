@@ -32,11 +32,16 @@ std::array<double, most_parameters> RampFit::row(double u, RampDirection directi
   return out;
 }
 
+/// Fisher scoring. The slope of a surface jumps at the ends of its tables. If a jump lies at the maximum, whole steps
+/// go to and fro over it without end. A step back that is not much shorter than the last one is therefore halved, with
+/// all later ones, and a maximum that is located to a thousandth of its standard error counts as found.
 Result<void> RampFit::climb(Directions directions) {
   parameters_ = powers_ + (directions == Directions::apart ? 1 : 0);
   const auto n = static_cast<Eigen::Index>(parameters_);
   constexpr int most_steps = 50;
-  constexpr double longest = 0.2, precise = 1e-9;
+  constexpr double longest = 0.2, precise = 1e-9, precise_in_errors = 1e-3;
+  double share = 1, in_errors = 0;
+  Eigen::VectorXd last = Eigen::VectorXd::Zero(n);
   for (int step = 0; step < most_steps; ++step) {
     Eigen::VectorXd score = Eigen::VectorXd::Zero(n);
     Eigen::MatrixXd information = Eigen::MatrixXd::Zero(n, n);
@@ -51,14 +56,21 @@ Result<void> RampFit::climb(Directions directions) {
     const Eigen::LLT<Eigen::MatrixXd> factor(information);
     if (factor.info() != Eigen::Success)
       return fail(ErrorCode::invalid_input, "fit over contrast: the answers do not determine the curve");
-    Eigen::VectorXd change = factor.solve(score);
+    Eigen::VectorXd change = share * factor.solve(score);
+    if (change.dot(information * last) < -0.5 * last.dot(information * last)) {
+      change /= 2;
+      share /= 2;
+    }
     const double largest = change.lpNorm<Eigen::Infinity>();
     if (!std::isfinite(largest))
       return fail(ErrorCode::invalid_input, "fit over contrast: the answers do not determine the curve");
     if (largest > longest) change *= longest / largest;
     for (Eigen::Index k = 0; k < n; ++k) value_[static_cast<std::size_t>(k)] += change(k);
     if (largest < precise) return {};
+    in_errors = std::sqrt(change.dot(information * change));
+    last = change;
   }
+  if (in_errors < precise_in_errors) return {};
   return fail(ErrorCode::invalid_input, "fit over contrast: no maximum of the quasi-likelihood was found");
 }
 

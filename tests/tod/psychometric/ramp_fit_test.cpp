@@ -115,6 +115,21 @@ TEST(RampFit, IntervalsCoverTheTruthAtContrastsThatAreNotThoseOfTheAnswers) {
   EXPECT_NEAR(mean, 0, 3 * 0.01 / std::sqrt(8.0 * runs) + 1e-3);
 }
 
+TEST(RampFit, FindsItsMaximumWhereTheSlopeOfTheSurfaceJumps) {
+  // A simulated table has errors. Its end has the slope of two intervals, and the curve a different one.
+  const LogisticSensor sensor;
+  constexpr std::uint64_t runs = 200;
+
+  for (std::uint64_t seed = 1; seed <= runs; ++seed) {
+    auto answers = answers_of(sensor, {.of_set_up = 0.01, .of_presentation = 0.02}, seed);
+    std::erase_if(answers, [](const RampAnswer& one) { return one.answer.presentation % 40 % 8 != 0; });
+    const auto fit = RampFit::of(std::move(answers), surface_of(sensor, 20, 0.18, 0.005, seed));
+    ASSERT_TRUE(fit) << seed << ": " << fit.error().message;
+    const RampValue value = fit->at(1.2);
+    EXPECT_NEAR(value.ln_s75, sensor.ln_s75(1.2), 5 * std::sqrt(value.variance.variance) + 0.02) << seed;
+  }
+}
+
 TEST(RampFit, NoAnswersAreAnError) {
   const auto fit = RampFit::of({}, surface_of({}, 20, 0.18));
 

@@ -2,6 +2,7 @@
 // Answers over contrast whose truth is known in closed form.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -22,15 +23,20 @@ struct LogisticSensor {
 
 inline constexpr ContrastNoise sc2000_noise{.noise_k = 0.07, .internal_noise = 0.07};
 
-inline ContrastSurface surface_of(const LogisticSensor& sensor, double strongest_k, double weakest_k) {
+/// `error`: standard deviation of the proportions of the tables, with random numbers of `seed`.
+inline ContrastSurface surface_of(const LogisticSensor& sensor, double strongest_k, double weakest_k, double error = 0,
+                                  std::uint64_t seed = 0) {
+  const RandomStream random(seed, "tables");
+  std::uint64_t draw = 0;
   std::vector<TableAtContrast> tables;
   for (const double delta_t_k : contrasts_of_surface(sc2000_noise, strongest_k, weakest_k)) {
     ProportionTable table;
     for (int i = -14; i <= 14; ++i) {
       const double ln_size = sensor.ln_s75(delta_t_k) + 0.08 * i;
       table.size_mrad.push_back(std::exp(ln_size));
-      table.proportion_correct.push_back(sensor.proportion(ln_size, delta_t_k));
-      table.standard_error.push_back(1e-4);
+      const double proportion = sensor.proportion(ln_size, delta_t_k) + (error > 0 ? error * random.normal(draw++) : 0);
+      table.proportion_correct.push_back(std::clamp(proportion, 0.25, 1.0));
+      table.standard_error.push_back(std::max(error, 1e-4));
     }
     tables.push_back({delta_t_k, table});
   }
