@@ -24,7 +24,7 @@ struct SpectralBand {
 /// Returns the temperature of the black body with this radiance; empty for a radiance of 0 or less, or above the
 /// radiance at 1e6 K.
 [[nodiscard]] std::optional<double> radiation_temperature_k(const SpectralBand& band, double radiance_w_m2_sr);
-/// Returns the derivative of the spectral radiance (in power units) by temperature, up to a constant factor.
+/// Returns the derivative of the spectral radiance (power units) by temperature, in an arbitrary constant unit.
 [[nodiscard]] double thermal_weight(double wavelength_um, double temperature_k);
 
 }  // namespace todbench

@@ -7,8 +7,8 @@
 namespace todbench {
 
 /// Returns the temperature (K) that a camera reports for a black body of `source_k` seen via mirrors of temperature
-/// `mirrors_k`. This is the temperature of a black body with the band radiance transmission L(source) + (1 -
-/// transmission) L(mirrors). Precondition: temperatures above 0 K, transmission above 0 and at most 1.
+/// `mirrors_k`: the temperature of a black body with the radiance t L(source) + (1 - t) L(mirrors). L: band_radiance();
+/// t: `transmission`, above 0 and at most 1. Precondition: temperatures above 0 K.
 [[nodiscard]] inline double seen_behind_mirrors_k(const SpectralBand& band, double transmission, double mirrors_k,
                                                   double source_k) {
   if (transmission == 1) return source_k;

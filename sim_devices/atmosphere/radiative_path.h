@@ -20,30 +20,30 @@ struct RadiativeScene {
 /// Checks a scene. Error: `invalid_input` (a temperature of 0 K or below, an emissivity outside 0 to 1).
 [[nodiscard]] Result<void> validate(const RadiativeScene& scene);
 
-/// Returns the radiance difference between target and background at the target, e [B(target) - B(background)], in
-/// W/(m2 sr). At the camera the difference is multiplied by the transmittance tau. Path radiance and reflections are
-/// equal for target and background and cancel.
+/// Returns the radiance difference between target and background at the target in W/(m2 sr), e [B(target) -
+/// B(background)], with the emissivity e and B: band_radiance(). At the camera the difference is multiplied by the
+/// transmittance of the air. Path radiance and reflections are equal for target and background and cancel.
 [[nodiscard]] double radiance_contrast(const SpectralBand& band, const RadiativeScene& scene);
-/// Converts a radiance contrast to kelvin: divides the contrast by dB/dT at `calibration_k`. `calibration_k` is the
-/// temperature for which the NETD of the camera is stated. The conversion is linear, so air multiplies the result by
-/// tau.
+/// Converts a radiance contrast to kelvin: divides the contrast by dB/dT at `calibration_k`, the temperature for which
+/// the NETD of the camera is stated (B: band_radiance()). The conversion is linear, so air multiplies the result by its
+/// transmittance.
 [[nodiscard]] double equivalent_contrast_k(const SpectralBand& band, double radiance_contrast_w_m2_sr,
                                            double calibration_k);
 
-/// Temperatures that a camera with a linear temperature scale displays. These are the radiation temperatures of the
-/// radiance L = tau [e B(T) + (1 - e) B(surround)] + (1 - tau) B(air).
+/// Temperatures that a camera with a linear temperature scale displays: those of black bodies with the radiance L = tau
+/// [e B(T) + (1 - e) B(surround)] + (1 - tau) B(air). tau: transmittance, e: emissivity, B: band_radiance().
 struct ApparentTemperatures {
   double target_k = 0,   ///< apparent temperature of the target
       background_k = 0;  ///< apparent temperature of the background
   /// Returns the apparent contrast in kelvin.
   [[nodiscard]] double contrast_k() const { return target_k - background_k; }
 };
-/// Returns the apparent temperatures; empty if a radiance corresponds to no temperature below 1e6 K. Precondition: a
-/// valid scene, 0 <= transmittance <= 1.
+/// Returns the apparent temperatures; empty if no temperature below 1e6 K has the radiance. Precondition: a valid
+/// scene, 0 <= transmittance <= 1.
 [[nodiscard]] std::optional<ApparentTemperatures> apparent_temperatures(const SpectralBand& band,
                                                                         const RadiativeScene& scene,
                                                                         double transmittance);
-/// Returns the path radiance (1 - tau) B(air) in W/(m2 sr). The air adds it to the radiance of target and background.
+/// Returns the path radiance (1 - transmittance) B(air), in W/(m2 sr), which air adds to target and background.
 [[nodiscard]] double path_radiance(const SpectralBand& band, double air_k, double transmittance);
 
 }  // namespace todbench

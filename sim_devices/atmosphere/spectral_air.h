@@ -17,8 +17,8 @@ struct SpectralExtinction {
   double wavelength_um = 0;      ///< > 0, increasing
   double extinction_per_km = 0;  ///< >= 0
 };
-/// Returns the band transmittance at every range, weighted with dL/dT (power) of a black body, by the trapezoid rule
-/// over the listed wavelengths. Errors: `invalid_input`.
+/// Returns the band transmittance at every range, weighted with dL/dT of a black body (power units) at `temperature_k`,
+/// by the trapezoid rule over the listed wavelengths. Errors: `invalid_input`.
 [[nodiscard]] Result<Transmittance> air_of_spectrum(std::span<const SpectralExtinction> spectrum, double temperature_k);
 
 /// One run of a tape7 file.
@@ -31,8 +31,8 @@ struct Tape7Run {
 /// the second the total transmittance. -9999 ends a run. Errors: `invalid_input` "line N: ...".
 [[nodiscard]] Result<std::vector<Tape7Run>> parse_tape7(std::string_view text);
 
-/// Returns the mean over the band, weighted with dL/dT (trapezoid rule in wavenumber). Errors: `invalid_input` if the
-/// run does not cover the band.
+/// Returns the mean transmittance over the band, weighted with dL/dT at `temperature_k` (trapezoid rule in wavenumber).
+/// Errors: `invalid_input` if the run does not cover the band.
 [[nodiscard]] Result<double> band_transmittance(const Tape7Run& run, const SpectralBand& band, double temperature_k);
 /// Returns the air of several runs as a table over their ranges. A single run is scaled by the law of Beer and Lambert
 /// at each wavenumber and tabulated from 1/1000 of its range to its range. This scaling treats lines narrower than the

@@ -8,11 +8,11 @@
 
 namespace todbench {
 
-/// Returns the sensor with the counts that this model sends with settings for measurements: 0.04 K in 14 bits, or 0.01
-/// K in 16. The sensor is unchanged for a model that sends raw counts.
+/// Returns the sensor with the counts that this model sends with settings for measurements: 14 bits of 0.04 K (ax5), or
+/// 16 bits of 0.01 K. For a model that sends raw counts (unlisted), the sensor is unchanged.
 [[nodiscard]] SensorSpec with_counts_of(CameraModel model, SensorSpec sensor);
 
-/// Returns a function that connects the camera. The sensor sets geometry, rate and scale of the configuration.
+/// Returns a function that connects the camera. The sensor sets geometry, rate and scale in `config`.
 [[nodiscard]] ConnectCamera connect_gvsp(GvspCameraConfig config);
 
 }  // namespace todbench

@@ -36,12 +36,12 @@ struct LaboratoryOptions {
   /// Connects a camera other than the GigE Vision camera. This camera must send the counts of `sensor`.
   ConnectCamera connect;
   EmulatedGigeCameraConfig camera;  ///< the sensor sets geometry, rate and scale
-  /// Error of the stated scale: the ratio of stated to true kelvin, both measured from `scene_temperature_k` of the
-  /// sensor; > 0. Affects only cameras that state their scale. A scale that the kind of camera fixes is not changed.
+  /// Error of the stated scale: stated kelvin over true kelvin, both measured from `scene_temperature_k` of the sensor;
+  /// > 0. Affects only cameras that state their scale, and no scale that is fixed by the kind of camera.
   double stated_scale = 1;
   /// Mirrors between target and camera; a transmission of 1: none.
   double mirror_transmission = 1, mirror_temperature_k = 295;
-  double latency_s = 0;  ///< time from the exposure of a frame to its time stamp, in addition to the camera's latency
+  double latency_s = 0;  ///< time from exposure to time stamp of a frame, in addition to the latency of the camera
   BlackBodyOptions black_body;
   PlateStageOptions stage;  ///< the plates of the stage are set from `plates`
   /// Upright monitor in front of the camera instead of black body and plate. The instruments run without effect.
@@ -49,8 +49,8 @@ struct LaboratoryOptions {
   /// Returns the counts that a faulty camera sends for an exposure of `scene`. Called on the camera's thread in the
   /// order of the exposures. Empty: the counts as exposed. Not called with a monitor.
   std::function<cv::Mat1w(cv::Mat1w counts, const PlateScene& scene)> sent_counts{};
-  /// Drift over the time of the camera: since the last correction for the GigE Vision camera, since power-up for other
-  /// cameras.
+  /// Drift over the time of the camera. It starts at the last correction for the GigE Vision camera, and at power-up
+  /// for other cameras.
   CorrectionDrift drift;
   std::uint64_t seed = 1;
 };

@@ -14,8 +14,8 @@
 
 namespace todbench {
 
-/// Emulated camera that serves during its lifetime. Its destruction acts like a pulled cable, without notice to a
-/// client.
+/// Emulated camera that serves clients during its lifetime. Destroying the camera acts like pulling its cable, without
+/// notice to a client.
 class LaboratoryCamera {
  public:
   virtual ~LaboratoryCamera() = default;

@@ -16,8 +16,8 @@ namespace todbench {
 
 /// Monitor with its present picture.
 struct Monitor {
-  /// Distance between the centres of pixels. Each pixel is a lit square of this size. The size must not exceed a sample
-  /// of the camera.
+  /// Distance between the centres of pixels, which are lit squares of this side length. The distance must not exceed
+  /// the size of a camera sample at the monitor.
   double pixel_mm = 0.25;
   double span_k = 20;  ///< contrast between white and black for the camera; > 0
   double gamma = 1;    ///< the light of a level from 0 to 1 is level^gamma; > 0
@@ -35,8 +35,8 @@ class MonitorView {
   [[nodiscard]] static Result<MonitorView> make(Monitor monitor, const SensorModel& model, Accuracy accuracy,
                                                 double distance_m, cv::Point2d centre_px);
 
-  /// Returns frame `index` of the present monitor. Half of its light corresponds to `scene_temperature_k` of the
-  /// sensor.
+  /// Returns frame `index` of the present monitor in counts. Half of the light of white corresponds to
+  /// `scene_temperature_k` of the sensor.
   [[nodiscard]] cv::Mat1w expose(std::uint64_t index);
 
  private:

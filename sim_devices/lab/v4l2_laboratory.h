@@ -10,13 +10,13 @@
 
 namespace todbench {
 
-/// Returns the sensor with the counts that a camera of this kind sends. Kinds that report temperature send 16 bits,
-/// with 0.01 or 1/64 K per count; count 0 is 0 K. The other kinds keep the scale of the sensor and send as many bits as
-/// their format has.
+/// Returns the sensor with the counts that a camera of this kind sends. Kinds that report temperature have 0.01 or 1/64
+/// K per count, 16 bits, and count 0 at 0 K. The other kinds keep the scale of the sensor and have as many bits as
+/// their pixel format.
 [[nodiscard]] SensorSpec with_counts_of(VideoCameraKind kind, SensorSpec sensor);
 
 /// Returns a function that connects an emulated camera to the emulated USB and video devices of `system`. The sensor
-/// that is passed to this function determines the size of the frames and the frame rate.
+/// argument determines frame size and rate. Its errors: those of EmulatedV4l2Camera::start().
 [[nodiscard]] ConnectCamera connect_v4l2(std::shared_ptr<MockSystem> system, VideoCameraConfig config);
 
 }  // namespace todbench

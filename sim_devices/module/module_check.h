@@ -14,9 +14,9 @@ namespace todbench {
 struct ModuleReport {
   std::vector<cv::Size> shapes;  ///< sizes of the pictures that the module processed
   bool network_cut = false;      ///< the module could not reach any other computer
-  double latency_ms = 0;         ///< median of an exchange of 320 x 240 numbers
+  double latency_ms = 0;         ///< median time of twenty exchanges of 320 x 240 numbers
   bool linear = false;           ///< linearity_deviation below 1e-4
-  /// Deviation of f(2 a - b / 2) from 2 f(a) - f(b) / 2, without the part of f(0), relative to the largest output.
+  /// Largest |f(2 a - b / 2) - (2 f(a) - f(b) / 2)| without the part of f(0), relative to the largest output.
   double linearity_deviation = 0;
   cv::Mat1f impulse_response;  ///< output for a 1 in the middle of zeros minus output for zeros: the central 9 x 9
   double impulse_sum = 0;      ///< sum of the whole response

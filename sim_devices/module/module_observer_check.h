@@ -10,17 +10,17 @@ namespace todbench {
 
 /// Test targets of one size.
 struct JudgedSize {
-  double size_samples = 0;  ///< square root of area
+  double size_samples = 0;  ///< square root of the area, in displayed samples
   int samples_per_pitch = 1;
-  int window_samples = 0;    ///< side of the patch
-  int asked = 0, right = 0;  ///< decisions, and correct decisions
+  int window_samples = 0;    ///< side of the patch in samples
+  int asked = 0, right = 0;  ///< number of decisions, and of correct decisions
 };
 
 /// Properties of an observer program that fulfils the contract. The contract allows any values of these properties.
 struct ObserverModuleReport {
   std::vector<JudgedSize> sizes;
   bool network_cut = false;  ///< the program could not reach any other computer
-  double latency_ms = 0;     ///< median of twenty patches of a target of 5 samples
+  double latency_ms = 0;     ///< median time of twenty patches of a target of 5 samples
   /// A second process that received the patches in the opposite order returned different scores.
   bool order_matters = false;
 };

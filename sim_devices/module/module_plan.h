@@ -35,7 +35,7 @@ struct ModulePlan {
   std::map<std::string, std::string> parameters;  ///< sent in the header
   int limit_ms = 5000;                            ///< time limit for one output, in ms
   int memory_mib = 0;                             ///< limit of address space; 0: no limit
-  bool network = false;                           ///< keeps the network of the host
+  bool network = false;                           ///< true: the module keeps the network of the host
   int restart_frames = 0;                         ///< outputs after which a new process is started; 0: never
   int settle_frames = 0;                          ///< frames after which earlier scenes no longer affect the output
   bool operator==(const ModulePlan&) const = default;
@@ -46,7 +46,7 @@ struct ModuleRanges {
 };
 inline constexpr ModuleRanges module_ranges{};
 
-/// Property of the sensor for the header.
+/// Property of the sensor that is sent in the header of a module.
 struct SensorFact {
   std::string name;
   std::variant<double, std::int64_t, std::uint64_t> value;

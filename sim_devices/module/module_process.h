@@ -23,7 +23,7 @@ enum class ModuleNetwork {
   cut,   ///< own network and message queues, no other sockets (bubblewrap); same as `ours` if bubblewrap cannot run
   ours,  ///< the network of this program
 };
-/// Returns whether a network can be cut here: bubblewrap is installed and works. The test is made once.
+/// Returns whether the network of a module can be cut on this host: bubblewrap is installed and works. Tested once.
 [[nodiscard]] bool can_cut_network();
 
 /// Command and limits of a module.
@@ -38,7 +38,7 @@ struct ModuleOptions {
 };
 
 /// Returns the first line (at most 256 bytes) that the command writes to its standard output or error within `limit`.
-/// The command runs with empty standard input under the limits of a module. Empty if there is none.
+/// The command runs with empty standard input under the limits of a module. Empty if it writes no line.
 [[nodiscard]] std::string first_line_of_module(const ModuleOptions& options);
 
 /// Running module: one .npy array is written to its standard input, and one array of the same shape is read from its

@@ -33,7 +33,7 @@ struct NpyPlace {
   std::size_t numbers = 0, count = 0;  ///< offset of the first byte of the numbers, and number of values
   std::size_t bytes = 0;               ///< size of the whole message
 };
-/// Locates the array at the beginning of a stream. Empty if bytes are still missing. Errors as read_message().
+/// Locates the array at the beginning of a stream. Empty if bytes are still missing. Errors: those of read_message().
 [[nodiscard]] Result<std::optional<NpyPlace>> find_message(std::string_view stream, std::size_t most_values);
 /// Returns the numbers of the array as a picture. Precondition: two dimensions, neither of them empty.
 [[nodiscard]] cv::Mat1f picture_at(std::string_view stream, const NpyPlace& place);
@@ -43,8 +43,8 @@ struct MessageRead {
   std::optional<NpyMessage> message;  ///< empty: more bytes are needed
   std::size_t bytes = 0;              ///< size of the message
 };
-/// Reads the first message of a stream. Errors: `integrity` (no .npy array, a type other than <f4, <f8, |u1, |i1, <u2,
-/// <i2, <u4, <i4, |b1, column order, more than `most_values`).
+/// Reads the first message of a stream. Errors: `integrity` (no .npy array, column order, more than `most_values`
+/// values, a type other than <f4, <f8, |u1, |i1, <u2, <i2, <u4, <i4, |b1).
 [[nodiscard]] Result<MessageRead> read_message(std::string_view stream, std::size_t most_values);
 
 }  // namespace todbench

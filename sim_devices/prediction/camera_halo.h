@@ -16,7 +16,7 @@ struct CameraHalo {
   double share = 0;     ///< share of the light of a triangle, in excess of the twin's halo; negative: less than the
                         ///< twin
   double share_se = 0;  ///< standard error of `share` for a normal halo of this width
-  double sigma_px = 0;  ///< width that fits the pictures best
+  double sigma_px = 0;  ///< standard deviation of the normal halo that fits the pictures best
 };
 
 /// Estimates a halo from several set-ups. The fit compares the brightness of the plate between the triangles, minus the
@@ -25,27 +25,27 @@ struct CameraHalo {
 /// moves with the triangles then has an effect. A plate that is warm beside its openings cannot be distinguished from a
 /// halo.
 ///
-/// Pixels within 4 detector pitches of a triangle are not used; CameraOpticsFit evaluates them. The standard error is
-/// the largest of three estimates, clustered by blocks of 16 x 16 pixels, by rows and by columns of these blocks.
+/// Pixels within 4 detector pitches of a triangle or of the border of the plate are not used. The standard error is the
+/// largest of three estimates, clustered by blocks of 16 x 16 pixels, by rows and by columns of these blocks.
 class CameraHaloFit {
  public:
-  /// `samples_per_pitch`: value of the camera.
+  /// `samples_per_pitch`: samples of the camera per detector pitch and axis.
   CameraHaloFit(const SensorSpec& twin, int samples_per_pitch);
 
-  /// Adds a picture of this contrast. Pictures of a different size are ignored.
+  /// Adds a picture with the contrast `delta_t_k`. Pictures of a different size and a contrast of 0 are ignored.
   void add(const OpticsPicture& picture, double delta_t_k);
 
-  /// Returns the halo. `f_number_ratio`: f-number of the camera divided by the twin's f-number (CameraOptics), for the
-  /// tail of diffraction. Empty if the halo is below half a per cent or below five standard errors, or with fewer than
-  /// two different set-ups. White noise exceeds these limits by chance in one of a million sessions.
+  /// Returns the halo. `f_number_ratio`: f-number of the camera over the twin's (CameraOptics), for the tail of
+  /// diffraction. Empty with fewer than two set-ups, if |share| is below 0.5 %, a fifth of the twin's share or five
+  /// standard errors, or if the total is negative. White noise exceeds these limits in one of a million sessions.
   [[nodiscard]] std::optional<CameraHalo> result(double f_number_ratio) const;
 
  private:
   /// Means over cells of 4 x 4 pixels; zero weight where triangles are near.
   struct Look {
     cv::Mat1f level;                ///< K per K of contrast
-    cv::Mat1f tail;                 ///< tail of diffraction, by the twin's optics
-    std::vector<cv::Mat1f> haloes;  ///< haloes of contrast 1, by width
+    cv::Mat1f tail;                 ///< tail of diffraction at the twin's f-number, for contrast 1
+    std::vector<cv::Mat1f> haloes;  ///< haloes of contrast 1, by sigma
     cv::Mat1f weight;
   };
   struct Estimate {

@@ -28,10 +28,10 @@ struct CameraOptics {
   double aberration_sigma_pitch = 0;
   double f_number_ratio = 1;  ///< f-number of the camera divided by the f-number of the sensor file
   double aberration_se_pitch = 0, f_number_ratio_se = 0;
-  /// Chi-square at the optics of the sensor file minus its minimum. For a camera equal to the sensor file it has two
-  /// degrees of freedom.
+  /// Chi-square of the optics of the sensor file minus the smallest chi-square. For a camera equal to the sensor file
+  /// this difference has two degrees of freedom.
   double twin_statistic = 0;
-  double chi2 = 0;  ///< residuals divided by the noise of the plate around them, per degree of freedom
+  double chi2 = 0;  ///< smallest chi-square per degree of freedom, relative to the noise of the plate
   double chi2_limit = 1;
   double degrees_of_freedom = 0;
   double noise_k = 0;          ///< noise of a pixel of the average, measured on the plate between the triangles
@@ -52,10 +52,10 @@ struct CameraOptics {
 ///
 /// The noise is measured on the plate between the triangles and includes fixed pattern and rounding. chi2_limit is 1
 /// plus four standard deviations, from the scatter of that noise over blocks of the plate. Errors of the renderer count
-/// as noise: 1e-4 of the contrast, twice the residual of pictures without noise.
+/// as noise of 1e-4 of the contrast, which is twice the residual of pictures without noise.
 ///
-/// For every picture, chi-square is approximated by a parabola in the two common parameters. The calculation takes a
-/// tenth of a second per picture. Not thread-safe.
+/// For every picture, chi-square is approximated by a parabola in the squared aberration sigma and the f-number ratio.
+/// The calculation takes a tenth of a second per picture. Not thread-safe.
 class CameraOpticsFit {
  public:
   /// `samples_per_pitch`: of the camera. `wavelengths`: as in Accuracy, 16 for a real camera. Precondition:

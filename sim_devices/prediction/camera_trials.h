@@ -22,9 +22,9 @@ enum class FrameDisplacements {
 /// Options of the trials.
 struct CameraTrialOptions {
   double delta_t_k = 0;             ///< contrast of every triangle; not 0
-  std::vector<double> sizes_pitch;  ///< each is shown four times per picture, once in each orientation
+  std::vector<double> sizes_pitch;  ///< sizes above 0.1 and below 40; each is shown in four orientations per picture
   int presentations = 24;           ///< pictures, each with its own sampling phase; at least 2
-  int frames = 16;                  ///< frames of a super-resolved picture, with displacements of up to half a pitch
+  int frames = 16;                  ///< frames of a super-resolved picture, at least 4, displaced by up to half a pitch
   FrameDisplacements displacements = FrameDisplacements::anywhere;
   int graded_draws = 32;  ///< draws of the observer's internal noise for the probabilities of one picture
   Accuracy accuracy;
@@ -48,9 +48,9 @@ struct CameraTrials {
 struct CameraTrialRecord {
   std::vector<CameraTrials> observers;
   double frames_registered = 0;    ///< mean number of registered frames of a super-resolved picture
-  double registration_rms_px = 0;  ///< estimated minus true displacement, per axis
-  double frames_per_sample = 0;    ///< averaged in a sample of the super-resolved picture
-  double placement_rms_px = 0;     ///< distance of averaged samples from the grid, per axis
+  double registration_rms_px = 0;  ///< rms of estimated minus true displacement, per axis
+  double frames_per_sample = 0;    ///< mean number of frames averaged in a sample of the super-resolved picture
+  double placement_rms_px = 0;     ///< rms distance of averaged samples from the fine grid, per axis
 };
 
 /// Runs the trials. Frames are byte for byte the counts that the simulated camera sends over its emulated link. All

@@ -31,17 +31,17 @@ struct CostPoint {
   std::string knob;     ///< "wavelengths", "phases", "wrap", "band", "draws", "trials", "tolerance", "planner"
   std::string setting;  ///< value of the knob: "4", "1.5e-05", "5 %", "normal"
   bool paired = false;  ///< same random numbers as its reference: the error comes from the setting only
-  std::optional<double> wall_s{};         ///< computing time; if not measured, this and the next two are empty
+  std::optional<double> wall_s{};         ///< computing time; if not measured, it and the next two values are empty
   std::optional<double> error_percent{};  ///< of the 75 % acuity against the reference; the largest over contrasts
   std::optional<double> standard_error_percent{};  ///< reported by the estimate; the largest over contrasts
   std::string not_measured{};                      ///< reason, a clause; empty if measured
   bool chosen = false;                             ///< selected by the plan
-  /// Among points that are not paired: no measured point is both faster and more accurate, standard error included.
+  /// True if no measured point without `paired` is both faster and more accurate, standard error included.
   bool best = false;
 
   [[nodiscard]] bool measured() const { return wall_s.has_value(); }
-  /// Returns the possible deviation of a result: root of the sum of squares of error and standard error; if paired, the
-  /// error.
+  /// Returns the possible deviation of a result in percent: sqrt(error^2 + standard error^2), or the error if `paired`
+  /// is true.
   [[nodiscard]] double total_percent() const {
     const double error = error_percent.value_or(0);
     return paired ? error : std::hypot(error, standard_error_percent.value_or(0));
@@ -90,7 +90,7 @@ struct CostTask {
   std::function<std::chrono::steady_clock::time_point()> now = [] { return std::chrono::steady_clock::now(); };
 };
 
-/// Callbacks: the present phase, and the numbers of completed and of all points.
+/// Callbacks for the name of the present phase, and for the numbers of completed points and of all points.
 struct CostListener {
   std::function<void(std::string_view phase)> on_phase{};
   std::function<void(std::size_t done, std::size_t points)> on_progress{};
@@ -101,8 +101,8 @@ struct CostListener {
 ///
 /// The error of wavelengths, phases, wrap and band is relative to the reference level with the same number of draws and
 /// the same random numbers. This error therefore comes from the setting only. The error of draws, trials, tolerance and
-/// planner is relative to the whole reference. This error contains the variation of their random numbers; their
-/// standard error is therefore reported, too. Computing times are the shorter of two runs if there is time.
+/// planner is relative to the reference itself and contains the variation of the random numbers, so their standard
+/// error is also reported. Computing times are the shorter of two runs if there is time.
 ///
 /// The time budget is never exceeded. The reference uses at most a third of the budget. If necessary it uses fewer
 /// draws and adds a note. A point that does not fit into the budget is left unmeasured, with a reason. The planner's

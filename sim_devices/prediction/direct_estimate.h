@@ -20,13 +20,13 @@ namespace todbench {
 struct DirectPoint {
   double delta_t_k = 0;
   /// Contrast by which the observer divides: the set contrast, or the reading of the camera if its counts are too
-  /// coarse or too few.
+  /// coarse or too few for the set contrast.
   double seen_delta_t_k = 0;
-  double s75_pitch = 0;  ///< 75 % size in detector pitches
-  double standard_error_pitch = 0;
-  std::vector<double> sizes_pitch;
-  std::vector<double> proportion_correct;
-  int noise_draws = 0;  ///< draws of noise for each size
+  double s75_pitch = 0;                    ///< 75 % size in detector pitches
+  double standard_error_pitch = 0;         ///< standard error of s75_pitch
+  std::vector<double> sizes_pitch;         ///< estimated sizes
+  std::vector<double> proportion_correct;  ///< proportion correct at each size
+  int noise_draws = 0;                     ///< draws of noise for each size
 };
 
 /// Options of the estimate.
@@ -36,13 +36,13 @@ struct DirectEstimateOptions {
   Accuracy accuracy;
   std::uint64_t seed = 1;
   ShownOrientations orientations = ShownOrientations::as_needed;  ///< orientations of the triangles
-  /// Temperature of the surround. The temperature determines the position of the surround within a count and within the
-  /// range of counts. Empty: scene_temperature_k of the sensor.
+  /// Temperature of the surround, which determines the position of the surround within a count and within the range of
+  /// counts. Empty: scene_temperature_k of the sensor.
   std::optional<double> background_k{};
   /// True contrast of the scene for each contrast that the camera reported. Used only if counts are too coarse or too
-  /// few. A contrast without an entry is the true contrast; its reading is then the expected reading.
+  /// few. A contrast without an entry is a true contrast, for which the expected reading is computed.
   std::map<double, double> scene_delta_t_k{};
-  std::stop_token stop{};  ///< ends with `interrupted` within a few hundredths of a second
+  std::stop_token stop{};  ///< a stop request ends the estimate with `interrupted` within some hundredths of a second
 };
 
 /// Returns one point per contrast (kelvin, > 0). Noise is drawn once per size and shared by phases and contrasts. If a
@@ -67,14 +67,14 @@ struct ProportionCurve {
 
 /// Returns the psychometric functions that direct_estimate() interpolates, one per contrast. The sizes extend from
 /// nearly chance level to nearly 100 % correct answers, within 0.2 to 40 pitches. Uses the draws of the accuracy and
-/// ignores a required standard error. Other errors as direct_estimate().
+/// ignores a required standard error. Errors: those of direct_estimate() except for the standard error.
 [[nodiscard]] Result<std::vector<ProportionCurve>> proportion_curves(const SensorSpec& spec, const SensorPlan& plan,
                                                                      TemplateObserver& observer,
                                                                      const std::vector<double>& delta_t_k,
                                                                      const DirectEstimateOptions& options);
 
-/// Returns the predicted time for one contrast near `s75_pitch`, on one core with about 2 x 10^10 template samples a
-/// second.
+/// Returns the predicted time in seconds for one contrast with a 75 % size near `s75_pitch`, on one core that projects
+/// about 2 x 10^10 template samples a second.
 [[nodiscard]] double predicted_direct_seconds(const TemplateObserverSpec& observer, const SensorSpec& sensor,
                                               double s75_pitch, int noise_draws, int phases_per_axis);
 

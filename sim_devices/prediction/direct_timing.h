@@ -13,8 +13,8 @@ namespace todbench {
 
 /// Predicts the processor time of direct_estimate() for one contrast, in seconds. `s75_pitch`: expected 75 % size;
 /// `noise_draws`: number of draws of noise for each of the final sizes. The function evaluates one size with a few
-/// draws, measures the time, and scales it to the whole estimate. The function takes some tens of milliseconds, longer
-/// for large sizes. Errors as TemplateObserver::bank().
+/// draws, measures the time, and scales this time to the whole estimate. The measurement takes some tens of
+/// milliseconds, longer for large sizes. Errors: those of TemplateObserver::bank().
 [[nodiscard]] Result<double> measured_direct_seconds(const SensorSpec& spec, const SensorPlan& plan,
                                                      const TemplateObserverSpec& observer, double delta_t_k,
                                                      double s75_pitch, double noise_draws, const Accuracy& accuracy,

@@ -15,9 +15,9 @@
 
 namespace todbench {
 
-/// The scene that will be observed.
+/// Contrasts and motion of the scene that will be observed.
 struct EffectScene {
-  std::vector<double> delta_t_k;  ///< never 0
+  std::vector<double> delta_t_k;  ///< contrasts in kelvin, not 0
   SceneMotion motion{};
   bool operator==(const EffectScene&) const = default;
 };
@@ -25,16 +25,16 @@ struct EffectScene {
 /// Options of the planner.
 struct EffectPlannerOptions {
   double tolerance_percent = 1;     ///< allowed change of the 75 % acuity by all skipped effects together
-  std::vector<Effect> skip, force;  ///< override the prediction; the reasons of the decisions state this
+  std::vector<Effect> skip, force;  ///< override the prediction; the reasons of the decisions state the request
 };
 
 /// Prediction at one contrast before the simulation.
 struct ContrastOutlook {
   double delta_t_k = 0;
-  double q_eff = 0;              ///< white noise per sample over the contrast, internal noise included
-  double s75_pitch = 0;          ///< S75 of the observer that knows the position
+  double q_eff = 0;              ///< q: white noise per sample over the contrast, internal noise included
+  double s75_pitch = 0;          ///< 75 % size of the observer that knows the position
   double noise_exponent = 0;     ///< d ln S75 / d ln q_eff
-  double blur_exponent = 0;      ///< d ln D / d ln S
+  double blur_exponent = 0;      ///< d ln D / d ln S: discriminability (cued_estimate.h) over target size
   double observer_variance = 0;  ///< share of the observer's own noise (internal, or of the eye) in q_eff squared
   double weibull_slope = 0;  ///< slope of the psychometric function of the observer that knows the position, at 75 %
 };
@@ -42,8 +42,8 @@ struct ContrastOutlook {
 /// Decisions of the planner, with the predictions on which they are based.
 struct EffectPlan {
   SensorPlan plan;                        ///< one decision per effect, in chain order
-  double skipped_change_percent = 0;      ///< bound for all effects together that the criteria skip
-  double requested_change_percent = 0;    ///< predicted for effects skipped on request, if a criterion exists
+  double skipped_change_percent = 0;      ///< bound on the change by all effects together that the criteria skip
+  double requested_change_percent = 0;    ///< predicted change by effects skipped on request that have a criterion
   std::vector<ContrastOutlook> outlooks;  ///< for each contrast with a threshold
   std::vector<std::string> warnings;      ///< sentences: contrasts without threshold, skipped effects without criterion
 };
@@ -73,8 +73,8 @@ struct SceneSurvey {
 [[nodiscard]] Result<EffectPlan> plan_effects(const SensorSpec& sensor, TemplateObserver& observer,
                                               const EffectScene& scene, const EffectPlannerOptions& options);
 
-/// Planner that caches its latest surveys. It plans immediately if only tolerance, requests or trials differ.
-/// Thread-safe; a request that arrives during a survey waits for the survey.
+/// Planner that caches its latest surveys, so it plans immediately if only tolerance, requests or trials differ from a
+/// cached survey. Thread-safe; a request that arrives during a survey waits for the survey.
 class EffectPlanner {
  public:
   /// Plans the effects as plan_effects() does, with a new observer.

@@ -20,23 +20,23 @@ struct FormulaConditions {
   double alpha_root_hz = 169.6;   ///< calibration of noise in the TTP model of 2004
 };
 
-/// Returns the input of the MRTD formula for a sensor: samples with microscan, averaged frames, fixed pattern as vh,
-/// row noise as tv and column noise as th. Errors: `invalid_input` for a sensor without temporal noise.
+/// Returns the input of the MRTD formula for a sensor: microscan, averaged frames, and the noise vh (fixed pattern), tv
+/// (rows) and th (columns). Errors: `invalid_input` (no temporal noise, pixels not square).
 [[nodiscard]] Result<MrtdFormula> mrtd_formula_of(const SensorSpec& spec, const FormulaConditions& conditions);
 
 /// Curves of both axes.
 struct AxisCurves {
   LogLinearCurve horizontal, vertical;
 };
-/// Returns the MRTD in kelvin over cycles/mrad, from 1 % to 100 % of the Nyquist frequency of the sampling. By
-/// definition the curve ends there. Contains the MTF of optics and detector, but not display and eye.
+/// Returns the MRTD in kelvin over cycles/mrad, from 1 % to 100 % of the Nyquist frequency of the sampling, where the
+/// curve ends by definition. Contains the MTF of optics and detector, but not display and eye.
 [[nodiscard]] Result<AxisCurves> mrtd_curves(const SensorSpec& spec, const FormulaConditions& conditions);
-/// Returns the MTDP-like curve. The curve continues beyond Nyquist as long as at least two bars are resolved at the
-/// best phase and the modulation is above 1 %.
+/// Returns the MTDP-like curve in kelvin over cycles/mrad. It continues beyond the Nyquist frequency as long as at
+/// least two bars are resolved at the best phase and the modulation is above 1 %.
 [[nodiscard]] Result<AxisCurves> mtdp_like_curves(const SensorSpec& spec, const FormulaConditions& conditions);
-/// Returns the contrast threshold of the system over cycles/mrad, up to Nyquist: eye / (display x sensor MTF) x sqrt(1
-/// + alpha^2 sigma^2 / S^2), as in the TTP model of 2004. sigma is the noise after the eye's channel exp(-2.2 ln^2).
-/// The result is the geometric mean of both axes.
+/// Returns the contrast threshold of the system over cycles/mrad, up to the Nyquist frequency: eye / (display x sensor
+/// MTF) x sqrt(1 + alpha^2 sigma^2 / S^2), as in the TTP model of 2004. alpha: alpha_root_hz; S: scene_contrast_k;
+/// sigma: noise after the channel exp(-2.2 ln^2) of the eye. The result is the geometric mean of both axes.
 [[nodiscard]] Result<LogLinearCurve> system_ctf(const SensorSpec& spec, const FormulaConditions& conditions);
 
 }  // namespace todbench

@@ -23,10 +23,10 @@
 
 namespace todbench {
 
-/// Range with the transmittance of its air.
+/// Range with the transmittance of the air along this range.
 struct IdentificationRange {
-  double range_m = 100;
-  double transmittance = 1;
+  double range_m = 100;      ///< distance from camera to target
+  double transmittance = 1;  ///< transmittance of the air in the band, 0 to 1
 };
 
 /// Pictures of the targets that the observer uses as templates.
@@ -38,7 +38,7 @@ enum class TemplateKnowledge {
 /// Differences between the targets.
 enum class TargetCues {
   all,   ///< shape, size and temperature pattern
-  shape  ///< every view has its dT_RSS uniformly over its shape, and is scaled to the mean size of the set
+  shape  ///< every view has a uniform contrast, its dT_RSS, and is scaled to the mean size of the set
 };
 
 /// Uses of the frames of a pass that identify() supports.
@@ -56,8 +56,8 @@ struct IdentificationTask {
   TemplateKnowledge knowledge = TemplateKnowledge::behind_camera;  ///< pictures that the observer uses as templates
   TargetCues cues = TargetCues::all;                               ///< differences between the targets
   int decisions = 2000;                                            ///< decisions per target and range, over all aspects
-  /// Motion of the targets in the picture: they move, or the camera turns. The plan must include the effects of this
-  /// motion.
+  /// Motion of the targets in the picture, because the targets move or the camera turns. The plan must include the
+  /// effects of this motion.
   SceneMotion motion{};
   /// Use of the frames of a pass, as for a moving triangle; internal noise is drawn once per decision.
   SequenceObserver sequence = SequenceObserver::single_frame;  ///< one of `identification_sequences`
@@ -80,19 +80,19 @@ struct IdentificationTask {
 
 /// Contrast and noise of the pictures after the stages, measured in pictures at rest.
 struct JudgedPictures {
-  double gain = 1;  ///< gain of the contrast of all views together; judged pictures are divided by this gain
+  double gain = 1;  ///< contrast after the stages over contrast before, all views together; divides the pictures
   double least_gain = 1, largest_gain = 1;  ///< smallest and largest gain of a single view
-  double noise_k = 0;                       ///< temporal noise of a sample, divided by the gain: mean over the views
+  double noise_k = 0;                       ///< temporal noise of a sample divided by the gain: mean over the views
 };
 
 /// Result at one range.
 struct IdentificationPoint {
   double range_m = 0, transmittance = 1;
-  std::vector<std::vector<int>> answers;  ///< [shown][answered]
+  std::vector<std::vector<int>> answers;  ///< number of answers, [shown target][answered target]
   /// Share of correct answers for each draw of noise. Draws are independent. All targets and aspects use the same
   /// draws.
   std::vector<double> by_draw;
-  /// Proportion correct of an observer with an eye, for the worst and the best values of its open parameters.
+  /// Lowest and highest proportion correct of an observer with an eye, over the limits of its open parameters.
   std::optional<std::pair<double, double>> spread{};
   std::optional<JudgedPictures> judged{};  ///< contrast and noise after the stages; empty without stages
   [[nodiscard]] double proportion() const;
@@ -101,30 +101,30 @@ struct IdentificationPoint {
 
 /// Predicted effort of an experiment.
 struct IdentificationEffort {
-  double decisions = 0;      ///< all targets and ranges
+  double decisions = 0;      ///< number for all targets and ranges
   double largest_bytes = 0;  ///< memory of the templates of one range
-  double processor_s = 0;    ///< time on one core with about 2 x 10^10 template samples a second, within a factor of
+  double processor_s = 0;    ///< time on one core that projects 2 x 10^10 template samples a second, within a factor of
                              ///< two
 };
-/// Predicts the effort without computing. Errors: those of identify() about the targets and their size.
+/// Predicts the effort without running the experiment. Errors: those of identify() about the targets and their size.
 [[nodiscard]] Result<IdentificationEffort> planned_effort(const IdentificationTask& task);
 
 /// Returns one point per range, in the same order. Every target in every aspect is shown with each draw of sensor noise
-/// and internal noise. The sampling phase is one of 16 and changes from draw to draw. The template observer sets the
-/// internal noise and the enlargement of the sensor's noise. The contrast is dT_RSS attenuated by the air; for an
-/// observer with an eye it is converted to the luminance contrast of its display. As in dynamic_trials(), a target in
-/// motion is judged at its true position, without the mean lag of time constant and exposure. Each row is judged at the
-/// time at which it is read.
+/// and internal noise. The sampling phase is one of 16 and changes from draw to draw. The observer specification sets
+/// the internal noise and the factor by which sensor noise is enlarged. The contrast is dT_RSS attenuated by the air;
+/// an observer with an eye judges the luminance contrast of its display. As in dynamic_trials(), a target in motion is
+/// judged at its true position, without the mean lag of time constant and exposure. Each row is judged at the time at
+/// which it is read.
 ///
 /// Stages receive rounded and clipped counts of the window and its surround, or of the whole picture if a stage needs
-/// it. Internal noise is relative to the contrast of a view in the judged pictures. The observer enlarges the noise of
-/// the judged pictures. A gain therefore has no effect. The templates of the observer do not include the stages. Ranges
-/// run in parallel on all processors, and the result does not depend on their number. Dead detectors are left out.
-/// Counts are rounded with the noise, not with the signal. Errors: `invalid_input` (fewer than two targets, targets
-/// that are equal from every side, a target without contrast, counts too coarse for the noise, targets too large for
-/// the observer, more than 5 pixels per frame, motion with microscan or super-resolution, several frames with image
-/// dance, targets that do not fit into the picture of a stage, contrasts that reach the lowest or highest count),
-/// `not_identifiable` (no contrast after the stages), `interrupted`, errors of the stages.
+/// the whole picture. Internal noise is relative to the contrast of a view in the judged pictures, and the enlarged
+/// sensor noise is the noise of the judged pictures. A gain of the stages therefore has no effect. The templates do not
+/// include the stages. Ranges run in parallel on all processors, and the result does not depend on their number. Dead
+/// detectors are left out. Rounding is applied to the noise, not to the signal. Errors: `invalid_input` (fewer than two
+/// targets, targets that are equal from every side, a target without contrast, counts too coarse for the noise, targets
+/// too large for the observer, more than 5 pixels per frame, motion with microscan or super-resolution, several frames
+/// with image dance, targets that do not fit into the picture of a stage, contrasts that reach the lowest or highest
+/// count), `not_identifiable` (no contrast after the stages), `interrupted`, errors of the stages.
 [[nodiscard]] Result<std::vector<IdentificationPoint>> identify(const IdentificationTask& task);
 
 /// Pictures of identify() for use with a different observer. Immutable, thread-safe.
@@ -132,11 +132,11 @@ class IdentificationFrames {
  public:
   /// Prepares the pictures of a task. Errors: those of identify() about the targets.
   [[nodiscard]] static Result<IdentificationFrames> of(const IdentificationTask& task);
-  /// Returns displayed kelvin above the background, with the noise of this draw and its sampling phase for this view,
-  /// as in identify() of the same task. All frames of a range have the same size. Errors: those of the stages.
+  /// Returns kelvin above the background as displayed, with the noise of draw `draw` and the sampling phase that
+  /// identify() uses for this view and draw. All frames of a range have the same size. Errors: those of the stages.
   [[nodiscard]] Result<cv::Mat1f> frame_k(std::size_t range, std::size_t target, std::size_t aspect,
                                           std::uint64_t draw) const;
-  /// Returns the contrast dT_RSS attenuated by the air.
+  /// Returns the contrast dT_RSS of a view in kelvin, attenuated by the air.
   [[nodiscard]] double contrast_k(std::size_t range, std::size_t target, std::size_t aspect) const;
 
  private:

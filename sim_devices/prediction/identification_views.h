@@ -13,25 +13,25 @@
 
 namespace todbench {
 
-inline constexpr int identification_phases_on_axis = 4;
+inline constexpr int identification_phases_on_axis = 4;  ///< sampling phases along each axis
 inline constexpr int identification_phases = identification_phases_on_axis * identification_phases_on_axis;
 
 /// One view, independent of range: edges in metres, and contrast.
 struct SeenAspect {
   std::vector<StepEdge> edges_m;
-  double dt_rss_k = 0, size_m = 0;
+  double dt_rss_k = 0, size_m = 0;  ///< contrast dT_RSS in kelvin, effective size in metres
 };
 using SeenTargets = std::vector<std::vector<SeenAspect>>;
 
 /// Returns the views of a task by target and aspect. Errors: those of identify() about the targets.
 [[nodiscard]] Result<SeenTargets> seen_targets(const IdentificationTask& task);
 
-/// Returns the first draw that shows a view in a phase; every identification_phases-th draw follows. Views begin with
-/// different phases.
+/// Returns the first draw that shows a view in sampling phase `phase`; the following draws are identification_phases
+/// apart. Views begin with different phases.
 [[nodiscard]] std::size_t first_draw_of(std::size_t phase, std::size_t target, std::size_t aspect);
-/// Returns the offset of a target's origin from the middle of the window, in samples.
+/// Returns the offset of a target's origin from the middle of the window in phase `phase`, in samples.
 [[nodiscard]] cv::Point2d view_offset(std::size_t phase);
-/// Returns a number that is unique for each picture without noise. The number selects the image dance of the picture.
+/// Returns a number that is unique for each picture without noise and that selects its image dance.
 [[nodiscard]] std::uint64_t presentation_of(std::size_t phase, std::size_t target, std::size_t aspect);
 
 /// Returns the number of displayed samples per metre.

@@ -15,11 +15,11 @@ struct Crossing {
   double x = 0, standard_error = 0;  ///< position of the crossing and its standard error, in ln size
 };
 
-/// Finds the crossing. `xs`: ln size, increasing in equal steps, at least four, around the crossing. A size at a
-/// distance of d steps from the crossing has the weight max(0.001, 1 - (d / 3)^2). Crossing and weights are found
-/// together by iteration, so the result hardly depends on the choice of sizes. The standard error propagates the
-/// variances between draws through the fit and its weights. Empty if the proportion does not rise through 75 % at the
-/// crossing.
+/// Finds the crossing. `xs`: ln size, increasing in equal steps, at least four, around the crossing; `ps`: proportion
+/// correct at each size. A size at a distance of d steps from the crossing has the weight max(0.001, 1 - (d / 3)^2).
+/// Crossing and weights are found by iteration, so the result hardly depends on the choice of sizes. The standard error
+/// propagates the variances between draws through the fit and its weights. Empty if the proportion does not rise
+/// through 75 %.
 [[nodiscard]] std::optional<Crossing> local_crossing(const std::vector<double>& xs, const std::vector<Proportion>& ps);
 
 }  // namespace todbench

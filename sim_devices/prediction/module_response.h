@@ -21,17 +21,17 @@ struct ModuleResponseOptions {
   LevelEstimate level = LevelEstimate::median;  ///< estimate of the level of a triangle
 };
 
-/// Returns the response as contrast_response() does. The pictures come from a separate process. The output of this
-/// process for an empty scene in the same frames is subtracted, and the difference is divided by the contrast. Noise
-/// that depends only on the frame cancels. Errors: those of ModuleSensor, register_plate() and effective_contrast();
+/// Returns the response as contrast_response() does, with pictures from a separate process. The output of this process
+/// for an empty scene in the same frames is subtracted, and the difference is divided by the contrast. Noise that
+/// depends only on the frame number cancels. Errors: those of ModuleSensor, register_plate() and effective_contrast();
 /// `interrupted`. Precondition: sensor_module(spec).
 [[nodiscard]] Result<double> module_response(const SensorSpec& spec, std::uint64_t seed, const TargetPlate& plate,
                                              const ModuleResponseOptions& options, std::stop_token stop = {});
 
 /// Returns the modulus of the transfer function of the whole image formation along x, at frequencies in cycles per
-/// pitch. The result is the Fourier transform of the difference between pictures of a 1 K edge at positions one scene
-/// sample apart. It is computed for four positions within a pitch, and averaged over all rows. Errors: those of
-/// ModuleSensor.
+/// pitch. The modulus is that of the Fourier transform of the line response: the difference between pictures of a 1 K
+/// edge at positions one scene sample apart, for four positions within a pitch, averaged over all rows. Errors: those
+/// of ModuleSensor.
 [[nodiscard]] Result<std::vector<double>> module_transfer(ModuleSensor& sensor, const SensorSpec& spec,
                                                           const std::vector<double>& cycles_per_pitch);
 

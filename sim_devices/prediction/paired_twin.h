@@ -19,7 +19,7 @@
 
 namespace todbench {
 
-/// Rotations by plate and mounting, clockwise in the picture, as registered; a missing entry is 0.
+/// Rotations of the plates in degrees, by plate and mounting, clockwise in the picture; a missing entry is 0.
 using PlateRotations = std::map<std::pair<std::string, Mounting>, double>;
 
 /// Options of twin_answers().
@@ -30,8 +30,8 @@ struct PairedTwinOptions {
   PlateRotations rotations_deg{};  ///< rotations of the plates in the pictures of the camera
   SceneMotion motion{};            ///< motion of the target
   Accuracy accuracy{};
-  /// Seed. This seed may equal the seed of the camera's own simulation, because temporal noise, fixed pattern and the
-  /// observer's noise use separate streams.
+  /// Seed of noise and answers. It may equal the seed of the camera's own simulation, because temporal noise, fixed
+  /// pattern and observer's noise use separate streams.
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
@@ -42,10 +42,10 @@ struct TwinAnswer {
   double variance = 0;             ///< variance of that mean, from the scatter over the pictures
 };
 
-/// Shows every trial to the simulated sensor as the camera observed it. This includes the sub-pixel phase of the
-/// triangle, the rotation of the plate, and the effective contrast, by which the observer also divides. The size in
-/// mrad uses the sensor's own instantaneous field of view. Returns one answer per trial, in the same order. Trials of a
-/// presentation must be consecutive.
+/// Shows every trial to the simulated sensor as the camera observed the trial: with the sub-pixel phase of the
+/// triangle, the rotation of the plate and the effective contrast, by which the observer also divides. The size in mrad
+/// is converted with the instantaneous field of view of the sensor. Returns one answer per trial, in the same order.
+/// Trials of a presentation must be consecutive.
 ///
 /// Computes only the windows round the triangles, edge by edge in one picture. Other triangles of the plate do not
 /// contribute to a window. Fixed pattern and dead pixels are new in every draw and set-up, so the mean includes them.

@@ -17,8 +17,8 @@ class SeenWindow {
  public:
   /// Precondition: `spec` is as_planned(). `imager` must outlive the object.
   SeenWindow(const SensorSpec& spec, const SceneImager& imager);
-  /// Returns the picture of edges in samples round the origin, which lies `offset` from the middle of the window. Steps
-  /// are multiplied by `factor`. With image dance, the target is displaced as in presentation `number`.
+  /// Returns the picture of edges in samples round their origin, which lies `offset` samples from the middle of the
+  /// window. Steps are multiplied by `factor`. The image dance is that of presentation `number`.
   [[nodiscard]] cv::Mat1f picture(const std::vector<StepEdge>& edges, int window_samples, cv::Point2d offset,
                                   double factor, std::uint64_t number) const;
 

@@ -14,11 +14,11 @@ inline constexpr double trial_distance_m = 1;
 
 /// Returns a plate with four orientations of every size, size by size (triangle t has size number t / 4), two sizes in
 /// a row. The cells are so wide that no window contains a neighbour. Four large triangles of the same contrast follow,
-/// above and below; the registration uses them like the edges of a plate. Precondition: at least one size.
+/// two above and two below the rows, as marks for the registration. Precondition: at least one size.
 [[nodiscard]] TargetPlate trial_plate(const std::vector<double>& sizes_pitch, double ifov_mrad);
 
-/// Returns the sensor cropped to the plate, with `margin_px` on every side. Pixels outside all windows would only cost
-/// time.
+/// Returns the sensor cropped to the plate, with `margin_px` on every side and without distortion. The cropped pixels
+/// lie outside all windows and would only cost time.
 [[nodiscard]] SensorSpec cropped_to(SensorSpec sensor, const TargetPlate& plate, int margin_px);
 
 }  // namespace todbench

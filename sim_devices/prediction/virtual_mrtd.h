@@ -23,8 +23,8 @@ namespace todbench {
 /// Task of the observer.
 enum class BarCriterion {
   four_or_five,  ///< two intervals with four and five bars: which had four? 75 %, free of bias
-  /// Yes-or-no question: is every gap lower than both its bars? 75 % yes, with 5 % yes without bars. An observer with
-  /// an eye judges the picture after display and eye (SeenPicture), any other observer the camera's picture.
+  /// Is every gap lower than both bars beside it? 75 % answers yes, at a limit with 5 % yes without bars. An observer
+  /// with an eye judges the picture after display and eye (SeenPicture), any other observer the picture of the camera.
   bars_resolved,
   detection  ///< two intervals, one with four bars: which one? 75 %; not an MRTD
 };
@@ -40,7 +40,7 @@ struct VirtualMrtdTask {
   BarCriterion criterion = BarCriterion::four_or_five;  ///< task of the observer
   BarAxis axis = BarAxis::horizontal;                   ///< axis that the bars test
   std::vector<double> frequencies_per_mrad;             ///< frequencies of the bars, in cycles per mrad
-  int draws = 2000;                                     ///< draws of noise for each frequency
+  int draws = 2000;                                     ///< draws of noise for each frequency, at least 64
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };
@@ -48,18 +48,18 @@ struct VirtualMrtdTask {
 /// Result at one frequency.
 struct VirtualMrtdPoint {
   double frequency_per_mrad = 0;
-  double frequency_over_nyquist = 0;
-  /// Contrast in kelvin for 75 % over all phases; empty if no contrast up to highest_k is sufficient.
+  double frequency_over_nyquist = 0;  ///< bar frequency over the Nyquist frequency of the samples
+  /// Contrast in kelvin at 75 % over all phases; empty if the proportion stays below 75 % up to highest_k.
   std::optional<double> threshold_k;
-  /// threshold_k of an observer with an eye at both limits of its open parameters; empty if there is no threshold at
-  /// one of these limits.
+  /// threshold_k of an observer with an eye at both limits of its open parameters; empty if one of these limits has no
+  /// threshold.
   std::optional<std::pair<double, double>> spread_k{};
   double relative_error = 0;  ///< standard error of threshold_k divided by threshold_k, from the draws
-  /// Threshold at the best and at the worst of eight phases across the bars.
+  /// Threshold in kelvin at the best and the worst of eight phases across the bars; empty if not reached.
   std::optional<double> best_phase_k, worst_phase_k;
-  double highest_k = 0;           ///< highest contrast tried
+  double highest_k = 0;           ///< highest contrast tried, at most 3081 times ideal_k
   double proportion_at_most = 0;  ///< correct answers at highest_k, over all phases
-  /// Threshold of an ideal observer that knows the phase, with the white noise of the sensor alone.
+  /// Threshold in kelvin of an ideal observer that knows the phase, in the white noise of the sensor alone.
   double ideal_k = 0;
   double share_of_four = 0;  ///< share of the phases across the bars in which four bars are resolved without noise
   /// Modulation of four sampled bars at the best and worst phase (tod/range/bars_sampled.h).

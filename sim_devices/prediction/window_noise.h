@@ -34,7 +34,7 @@ class WindowNoise {
   SensorSpec small_;
   SensorPlan plan_;
   Accuracy accuracy_;
-  cv::Size window_;
+  cv::Size window_;  ///< size of the window in samples
   int margin_ = 0;
   std::uint64_t seed_;
 };

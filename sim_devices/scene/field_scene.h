@@ -70,7 +70,7 @@ struct RadianceScale {
   [[nodiscard]] double kelvin(double radiance_w_m2_sr) const;
 };
 
-/// Returns the regions in equivalent kelvin against the background, without air: [L - L_background] / (dB/dT).
+/// Returns the regions in equivalent kelvin, without air: [radiance - background radiance] / (dB/dT).
 [[nodiscard]] std::vector<PaintedPolygon> levels_k(const FieldScene& scene, const RadianceScale& scale);
 /// Returns the picture in equivalent kelvin against the background, without air. Precondition: the scene has a picture.
 [[nodiscard]] cv::Mat1d picture_levels_k(const FieldScene& scene, const RadianceScale& scale);

@@ -11,10 +11,10 @@ namespace todbench {
 
 /// Mounted plate at a distance, with its middle near the middle of the picture. Copyable.
 struct PlateScene {
-  TargetPlate plate;          ///< as mounted
-  double delta_t_k = 0;       ///< temperature of the triangles minus temperature of the surround
-  double background_k = 300;  ///< temperature of the surround
-  double distance_m = 2;
+  TargetPlate plate;                 ///< as mounted
+  double delta_t_k = 0;              ///< temperature of the triangles minus temperature of the surround
+  double background_k = 300;         ///< temperature of the surround
+  double distance_m = 2;             ///< distance from camera to plate
   cv::Point2d shift_mm{0, 0};        ///< shift of the plate in its own plane
   cv::Point2d centre_px{0.3, -0.2};  ///< middle of the plate at shift 0, from the middle of the picture
   double rotation_deg = 0;           ///< rotation of the plate about the line of sight, clockwise in the picture

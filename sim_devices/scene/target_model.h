@@ -14,8 +14,8 @@ struct TargetPart {
   std::string name;
   Polygon profile_m;  ///< x forward, y up from the ground or water
   double width_m = 0;
-  double side_m = 0;  ///< lateral position of the middle of the prism; positive to port
-  double temperature_k = 300, emissivity = 0.95;
+  double side_m = 0;                              ///< lateral position of the middle of the prism; positive to port
+  double temperature_k = 300, emissivity = 0.95;  ///< of all surfaces of the prism
 };
 
 /// Target made of parts.

@@ -13,25 +13,25 @@
 
 namespace todbench {
 
-inline constexpr int cell_reach = 6;  ///< a cell affects samples up to this distance beyond it, in samples
-inline constexpr int response_side = 2 * cell_reach + 1;
-inline constexpr int largest_degree = 24;
+inline constexpr int cell_reach = 6;  ///< distance from a cell up to which the cell affects samples, in samples
+inline constexpr int response_side = 2 * cell_reach + 1;  ///< side of the square of affected samples, in samples
+inline constexpr int largest_degree = 24;                 ///< highest supported degree of the Legendre polynomials
 
-/// Values of the orthonormal Legendre polynomials on [-1/2, 1/2] at one position: p[a], and their integrals q[a] from
-/// -1/2. For a >= 1 the integrals vanish at both limits of the range.
+/// Orthonormal Legendre polynomials on [-1/2, 1/2] at a position x, by degree a: p[a] is the value, q[a] the integral
+/// from -1/2 to x. For a >= 1 the integral is 0 at both ends of the range. q[0] is not computed and is 0.
 struct LegendreValues {
   std::array<double, largest_degree + 2> p{}, q{};
 };
-/// Returns the polynomials up to `degree`, which is at most largest_degree.
+/// Returns the values at `x`, -1/2 to 1/2, for degrees 0 to `degree`. `degree` is at most largest_degree.
 [[nodiscard]] LegendreValues legendre(double x, int degree);
-/// Returns the pairs (a, b) with 1 <= a + b <= degree, sorted by a. All tables use this order.
+/// Returns the degrees (a, b) along x and y with 1 <= a + b <= degree, sorted by a, then by b, as in all tables.
 [[nodiscard]] std::vector<std::pair<int, int>> legendre_pairs(int degree);
 
-/// Transfer functions of image formation, with frequencies in cycles per sample. The optics are tabulated over the
-/// radius and interpolated linearly.
+/// Transfer functions of image formation, with frequencies in cycles per sample. The transfer function of the optics is
+/// tabulated over the radial frequency and interpolated linearly.
 class SampleTransfer {
  public:
-  /// The upper limit of the band is the highest frequency that the planned effects pass, at most 16 cycles per pitch.
+  /// Creates the transfer functions. Their band ends at highest_frequency(), at most 16 cycles per pitch.
   SampleTransfer(const ChainScope& scope, const Accuracy& accuracy);
   [[nodiscard]] double band_per_sample() const { return band_ / per_pitch_; }
   /// Returns whether every effect in the chain is symmetric about both axes.
@@ -39,11 +39,11 @@ class SampleTransfer {
   [[nodiscard]] double footprint(double f_per_sample, PitchAxis axis) const {
     return footprint_(f_per_sample * per_pitch_, axis);
   }
-  /// Returns the squared radial frequency in cycles per sample along x.
+  /// Returns the square of the radial frequency, in (cycles per sample along x)^2; u, w in cycles per sample.
   [[nodiscard]] double radius_squared(double u, double w) const { return u * u + w * w * per_aspect_squared_; }
-  /// Returns the optics at a squared radial frequency; 0 beyond the band.
+  /// Returns the transfer function of the optics at a radius_squared(); 0 beyond the band.
   [[nodiscard]] double optics(double rho_squared) const;
-  /// Returns the product of all transfer functions except optics and footprint.
+  /// Returns the product of all transfer functions except optics and footprint; u, w in cycles per sample.
   [[nodiscard]] std::complex<double> rest(double u, double w) const;
 
  private:
@@ -52,13 +52,13 @@ class SampleTransfer {
   FootprintMtf footprint_;
   std::vector<TransferFunction> others_;
   std::vector<double> optics_;
-  int nodes_ = 0;  ///< nodes of the table of optics
+  int nodes_ = 0;  ///< number of equal intervals of optics_ over the band
 };
 
-/// Returns the responses of the samples around a cell to the polynomials of legendre_pairs() over that cell. The result
-/// has one row for each polynomial, with response_side squared values, row by row.
+/// Returns the responses of the samples around a cell to the polynomials of legendre_pairs() over that cell. The matrix
+/// has one row for each polynomial: response_side x response_side samples, line by line.
 [[nodiscard]] cv::Mat1f coefficient_responses(const SampleTransfer& transfer, int degree);
-/// Returns the response to a unit cell, summed over all aliases, at the frequencies of a periodic grid of samples.
+/// Returns the spectrum of the response to a cell of level 1 on a periodic grid of `size` samples, aliases summed.
 [[nodiscard]] cv::Mat2d unit_cell_response(const SampleTransfer& transfer, cv::Size size);
 
 }  // namespace todbench

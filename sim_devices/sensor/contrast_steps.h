@@ -15,15 +15,15 @@ class ContrastSteps {
   /// Creates a constant contrast `delta_t_k`, without a step.
   explicit ContrastSteps(double delta_t_k = 0) : settled_k_(delta_t_k) {}
 
-  /// Adds a step to `delta_t_k`. Times must increase from call to call.
+  /// Adds a step at `time_s` (s) to the contrast `delta_t_k` (K). Times must increase from call to call.
   void step(double time_s, double delta_t_k);
-  /// Returns the reached contrast, averaged over the exposure that ends at `end_s`. The contrast approaches each step
-  /// with the time constant T, as exp(-t / T). Returns the set contrast bit for bit if the detector has neither time
-  /// constant nor exposure, or long after the last step. Steps later than `end_s` have no effect yet.
+  /// Returns the reached contrast in K, averaged over the exposure that ends at `end_s`. After a step, the distance
+  /// from its contrast falls as exp(-t / T) with the time constant T of `spec`. Returns the set contrast bit for bit if
+  /// T and the exposure are 0, or if over(). Steps later than `end_s` have no effect.
   [[nodiscard]] double seen_k(double end_s, const SensorSpec& spec) const;
   /// Returns the contrast after the last step.
   [[nodiscard]] double last_k() const { return steps_.empty() ? settled_k_ : steps_.back().delta_t_k; }
-  /// Returns whether a detector has settled at `time_s` after all steps.
+  /// Returns whether the detector of `spec` has settled at `time_s` (s) after all steps.
   [[nodiscard]] bool over(double time_s, const SensorSpec& spec) const;
 
  private:

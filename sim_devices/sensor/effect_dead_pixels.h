@@ -8,8 +8,8 @@
 
 namespace todbench {
 
-/// Returns the mask of the dead detectors, one byte each, not 0 if dead. The random number of a detector is the same
-/// for all shares, so a larger share includes the dead detectors of a smaller share.
+/// Returns the mask of the dead detectors, one byte per detector, not 0 if dead. `share`: share of dead detectors. The
+/// random number of a detector is the same for all shares: a larger share includes the dead detectors of a smaller one.
 [[nodiscard]] cv::Mat1b dead_detectors(cv::Size detectors, double share, const RandomStream& stream);
 
 /// Replaces samples of dead detectors by the mean of up to four nearest live neighbours in the same sub-exposure.

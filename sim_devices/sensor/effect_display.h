@@ -10,12 +10,12 @@
 
 namespace todbench {
 
-/// Returns the taps -r .. r of a symmetric separable filter on samples with the response `response`(f) at f cycles per
-/// sample: integrals over |f| <= 1/2, normalised to sum 1.
+/// Returns the taps -8 ... 8 of the symmetric filter whose response at f cycles per sample is `response`(f). A tap is
+/// an integral over |f| <= 1/2; the taps are normalised to sum 1.
 [[nodiscard]] std::vector<double> taps_of(const std::function<double(double)>& response);
 
-/// Returns the response of edge filter and display, without the sample-and-hold that observers already assume: exp(-2
-/// pi^2 sigma^2 f^2) times 1 + 4 b sin^2(pi f) for a boost of b, times sinc(f) for bilinear interpolation.
+/// Returns the response of edge filter and display along one axis, (1 + 4 b sin^2(pi f)) exp(-2 pi^2 s^2 f^2) with b =
+/// edge_boost and s = display_blur_samples; times sinc(f) if bilinear. Observers assume the sample-and-hold.
 [[nodiscard]] double display_response(const SensorSpec& spec, double f_per_sample);
 /// Returns whether the display differs from sample-and-hold, or the camera boosts edges.
 [[nodiscard]] bool has_display(const SensorSpec& spec);

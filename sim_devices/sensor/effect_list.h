@@ -33,7 +33,7 @@
 
 namespace todbench {
 
-/// A stage of the sensor chain, described by its row (effect_row.h). An effect at its neutral value gives the same
+/// An effect of the sensor chain, described by its row (effect_row.h). An effect at its neutral value gives the same
 /// result as an omitted effect, bit for bit.
 #define TODBENCH_EFFECT_NAME(name) name,
 enum class Effect { TODBENCH_EFFECTS(TODBENCH_EFFECT_NAME) };

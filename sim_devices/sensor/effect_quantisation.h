@@ -12,16 +12,16 @@ namespace todbench {
 
 /// Returns the temporal noise of a displayed sample in counts, before rounding.
 [[nodiscard]] double noise_in_counts(const SensorSpec& spec);
-/// Returns whether a count is larger than one standard deviation of the noise. If the count is not larger, rounding
-/// errors act as additional noise with a variance of 1/12 squared count, accurate to 3e-9 of a count. Otherwise
-/// rounding errors depend on the signal.
+/// Returns whether a count is larger than one standard deviation of the noise. For a smaller count, rounding errors act
+/// as additional noise with a variance of 1/12 squared count, accurate to 3e-9 of a count. For a larger count, rounding
+/// errors depend on the signal.
 [[nodiscard]] bool rounds_coarsely(const SensorSpec& spec);
-/// Returns whether the surround or a target of this contrast is less than six standard deviations of the noise away
-/// from the lowest or highest count.
+/// Returns whether the surround or a target of this contrast is less than six standard deviations of the noise
+/// (temporal and fixed pattern) away from the lowest or highest count. `background_k`: temperature of the surround.
 [[nodiscard]] bool reaches_an_end(const SensorSpec& spec, double delta_t_k, double background_k);
 
-/// Rounds kelvin above the surround to the counts of a sensor, halves upwards. The limits between counts do not depend
-/// on the position of the surround within its count. Immutable; any thread.
+/// Rounds kelvin above the surround to the counts of a sensor, halves upwards. The steps of counts are at fixed
+/// temperatures, wherever the surround lies within its count. Immutable; any thread.
 class Quantiser {
  public:
   Quantiser(const SensorSpec& spec, double background_k)
@@ -50,7 +50,7 @@ class Quantiser {
   [[nodiscard]] Reading reading(double kelvin, double sd_k) const;
 
  private:
-  /// Returns the unrounded level, whose whole part is the count.
+  /// Returns the level in counts plus 1/2; its integer part is the count.
   [[nodiscard]] double level(float kelvin) const { return half_up_ + static_cast<double>(kelvin) * per_kelvin_; }
 
   double step_k_, per_kelvin_, background_, half_up_, full_scale_;

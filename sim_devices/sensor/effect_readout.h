@@ -8,13 +8,13 @@
 
 namespace todbench {
 
-/// Returns the distance v t that the target moves from one row to the next, in pitches. The middle row samples at the
-/// time of the picture.
+/// Returns the distance that the target moves from the time of one row to the time of the next row, in pitches of each
+/// axis. The middle row samples at the time of the picture.
 [[nodiscard]] cv::Point2d readout_slope(const SensorSpec& spec, SceneMotion motion);
 
 /// Returns the position of a point in a picture with sequential readout. `place`: position of the point if all rows
-/// sample together with `middle_row`. The change is a shear along the rows and a stretch across them. The unit is
-/// pitches or samples. If the slope is 0, the position is returned bit for bit.
+/// sample together with `middle_row`. `slope`: readout_slope(). The change is a shear along the rows and a stretch
+/// across them. The unit is pitches or samples. If the slope is 0, the position is returned bit for bit.
 [[nodiscard]] cv::Point2d as_read_out(cv::Point2d place, cv::Point2d slope, double middle_row);
 
 /// Returns the distance that the target moves between the two fields of an interlaced frame, in pitches. The even rows

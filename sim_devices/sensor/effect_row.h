@@ -23,11 +23,11 @@
 
 namespace todbench {
 
-/// The sensor and a scene, for stages of image formation. References are valid only during the call.
+/// A sensor and a scene, as input of the stages of image formation. References are valid only during the call.
 struct ChainScope {
   const SensorSpec& spec;
   const SensorPlan& plan;
-  int wavelengths = 16;
+  int wavelengths = 16;  ///< number of nodes of the spectral band
   SceneMotion motion{};
 };
 
@@ -73,8 +73,8 @@ enum class Recurrence {
   every_exposure,  ///< the random numbers are new in each exposure
   fixed            ///< the random numbers are the same in every frame
 };
-/// Adds noise to a picture of samples, multiplied by `weight` (the weight of one exposure in an average over
-/// exposures).
+/// Adds noise to a picture of samples, multiplied by `weight`: the weight of one exposure in an average over
+/// exposures.
 struct Noise {
   Colour colour;
   Recurrence recurrence;
@@ -92,12 +92,12 @@ struct Counts {};
 using EffectStage = std::variant<stage::Optics, stage::Footprint, stage::Transfer, stage::Readout, stage::Lens,
                                  stage::Dance, stage::Parameter, stage::Noise, stage::Picture, stage::Counts>;
 
-/// Extent over which a stage of image formation spreads the picture of a point, in pitches.
+/// Extent over which a stage of image formation spreads the light of a point, in pitches.
 struct Spread {
   double period = 0;      ///< distance by which the period is enlarged, so that tails do not wrap round
   double window = 0;      ///< distance by which a window is enlarged; shapes inside are computed exactly
   double variance = 0;    ///< variance in pitches squared, for the axis with the larger variance
-  double far = 0;         ///< factor of the light from parts of a plane more than r pitches away: far r^(-5/3)
+  double far = 0;         ///< far r^(-5/3) is the share of light from beyond r pitches in a uniform plane
   double halo_share = 0;  ///< share of the light that is spread over `halo_reach`
   double halo_reach = 0;  ///< distance by which the period and a frame are enlarged for the halo
 };
@@ -105,10 +105,10 @@ struct Spread {
 /// Samples that share one random number.
 enum class SharedBy { detector, row, column };
 
-/// Input for the planner's estimate of noise, per sample and in units of the contrast squared.
+/// Input of the planner's estimate of noise. Variances are per sample, in units of the contrast squared.
 struct NoiseScope {
   const SensorSpec& spec;
-  double contrast_k2 = 1;
+  double contrast_k2 = 1;  ///< contrast squared, in K^2
   /// Returns the variance of the differences between templates for random numbers that these samples share, divided by
   /// the variance for white noise of the same size.
   std::function<double(SharedBy)> variance_ratio;
@@ -120,7 +120,7 @@ struct ExpectedScene {
   const SensorPlan& everything;  ///< every effect that is not neutral
   SceneMotion motion{};
   double s75_pitch = 0;
-  double noise_exponent = 0;                                ///< d ln S75 / d ln q, margin included
+  double noise_exponent = 0;                                ///< d ln S75 / d ln (noise / contrast), margin included
   std::array<double, all_effects.size()> noise_variance{};  ///< variance of each effect, in units of the contrast
                                                             ///< squared
   double total_variance = 0;                                ///< variance of all noise, including the noise of the
@@ -129,7 +129,7 @@ struct ExpectedScene {
   std::function<double(Effect without)> discriminability_change;
 
   [[nodiscard]] double variance_of(Effect effect) const { return noise_variance[static_cast<std::size_t>(effect)]; }
-  /// Returns the change of ln S75 for this change of the variance.
+  /// Returns the change of ln S75 for a change of the noise variance, in units of the contrast squared.
   [[nodiscard]] double noise_change(double variance_change) const;
 };
 
@@ -158,10 +158,10 @@ struct EffectRow {
   /// Highest frequency that passes, in cycles per pitch.
   double (*band)(const SensorSpec& spec, const Accuracy& accuracy) = nullptr;
 
-  /// Variance per displayed sample of spatially white noise, averaged over exposures, for an observer with
-  /// `noise_factor` times the temporal noise.
+  /// Variance per displayed sample of spatially white noise, averaged over exposures. `noise_factor`: factor by which
+  /// the observer enlarges the temporal noise.
   double (*white_variance_k2)(const SensorSpec& spec, double noise_factor) = nullptr;
-  /// For coloured noise: variance of white noise with the same effect on the threshold.
+  /// For coloured noise: variance of white noise with the same effect on the threshold, in contrasts squared.
   double (*coloured_variance)(const NoiseScope& scope) = nullptr;
   /// Bound on the change of ln S75 when the effect is skipped; empty if there is no bound
   /// (docs/method/effect-planning.md).
@@ -173,7 +173,7 @@ struct EffectRow {
 /// Returns the row of an effect. Immutable; lives as long as the program.
 [[nodiscard]] const EffectRow& row_of(Effect effect);
 
-/// Returns the variance per displayed sample of all white noise in the plan.
+/// Returns the variance of all white noise in the plan, per displayed sample. `noise_factor` as in EffectRow.
 [[nodiscard]] double white_variance_k2(const SensorSpec& spec, const SensorPlan& plan, double noise_factor);
 
 /// The rows. Each row is defined in the file of its effect.

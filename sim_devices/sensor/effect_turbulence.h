@@ -16,8 +16,8 @@ namespace todbench {
 /// Returns the coefficient c of the transfer function exp(-c rho^(5/3)), rho in cycles per pitch; 0 without turbulence.
 [[nodiscard]] double turbulence_strength(const SensorSpec& spec);
 
-/// Returns the bound on the change of ln S75 if turbulence is left out, for triangles of `s75_pitch`. The bound is that
-/// of a Gaussian blur with the same effect at half a cycle per triangle.
+/// Returns the bound on the change of ln S75 if turbulence is left out, for triangles of `s75_pitch`: the bound for a
+/// Gaussian blur with the same transfer function at half a cycle per triangle size.
 [[nodiscard]] double turbulence_bound(const SensorSpec& spec, double s75_pitch);
 
 }  // namespace todbench

@@ -10,9 +10,9 @@ namespace todbench {
 /// separates parts of a concave shape, they stay joined along its edge without enclosed area.
 [[nodiscard]] Polygon clipped(const Polygon& shape, double half_width);
 
-/// Returns the integral of |y - from|^-3 over the part of the shape outside the square |x|, |y| <= half_width, in
-/// 1/length; relative error 1e-5. `from` lies in the square. Each ray from `from` adds 1/r where it enters the shape
-/// and subtracts 1/r where it leaves it.
+/// Returns the integral of |y - from|^-3 over the points y of the shape outside the square |x|, |y| <= half_width, in
+/// 1/length; relative error 1e-5. `from` lies in the square. Each ray from `from` adds 1/r at the distance r where the
+/// ray enters the shape, and subtracts 1/r where the ray leaves the shape.
 [[nodiscard]] double far_integral(const Polygon& shape, cv::Point2d from, double half_width);
 
 }  // namespace todbench

@@ -21,8 +21,8 @@ class ImageChain {
   /// Precondition: validate(spec) succeeds.
   ImageChain(SensorSpec spec, SensorPlan plan, Accuracy accuracy, SceneMotion motion = {});
 
-  /// Returns the lattice that keeps wrapped signal and truncated band within the tolerances, for shapes of `size_pitch`
-  /// (square root of area, in pitches).
+  /// Returns the lattice that keeps wrapped signal and truncated band within the tolerances of the accuracy.
+  /// `size_pitch`: size of the shapes, the square root of their area.
   [[nodiscard]] FrequencyLattice lattice(double size_pitch) const;
   /// Returns the number of points per pitch at which the fine image contains the whole band. The number is a multiple
   /// of 16, so that all 16 x 16 phases lie on these points.
@@ -43,11 +43,11 @@ class ImageChain {
     double max_error_estimate = 0;
   };
   /// Computes samples of a shape on an infinite plane: `size` samples at distances of `step`, the first sample at
-  /// `first`, both in detector pitches of each axis. Uses Richardson extrapolation from the periods P and 2P, because
-  /// the wrapped signal falls as P^-3. The difference between the two results gives the error bound. If a shape reaches
-  /// far beyond the window, only its part near the window is computed in this way. The rest contributes the integrated
-  /// tail of the diffraction spot, c r^-3. Memory and time therefore do not grow with the shape. With sequential
-  /// readout, the times of the rows count from the row of the origin.
+  /// `first`, both in detector pitches of each axis. Uses Richardson extrapolation from the lattice periods P and 2P,
+  /// because the wrapped signal falls as P^-3. The difference between the two results gives the error bound. If a shape
+  /// reaches far beyond the window, only its part near the window is computed in this way. The rest contributes the
+  /// tail of the diffraction spot, which falls as distance^-3. Memory and time therefore do not grow with the shape.
+  /// With sequential readout, the times of the rows count from the row of the origin.
   [[nodiscard]] InfinitePlane infinite_plane(const Polygon& shape_pitch, cv::Point2d first, double step,
                                              cv::Size size) const;
 

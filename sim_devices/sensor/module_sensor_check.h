@@ -13,8 +13,8 @@ namespace todbench {
 struct SensorModuleReport {
   std::vector<cv::Size> shapes;    ///< sizes of the frames that the program returned, in pixels
   bool network_cut = false;        ///< the program could not reach any other computer
-  double latency_ms = 0;           ///< median of twenty frames of 320 x 240 pixels
-  double response = 0;             ///< mean output for a scene of 1 K minus mean for an empty scene, in the same frame
+  double latency_ms = 0;           ///< median time of twenty frames of 320 x 240 pixels
+  double response = 0;             ///< mean output for a 1 K scene minus mean for an empty scene, in the same frame
   double noise_k = 0;              ///< rms difference of two frames of an empty scene, over sqrt(2)
   bool linear = false;             ///< linearity_deviation below 1e-4
   double linearity_deviation = 0;  ///< as in ModuleReport, within one frame

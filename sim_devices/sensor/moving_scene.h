@@ -8,7 +8,7 @@
 namespace todbench {
 
 /// Returns the scene of a plate that moves along its own x at `speed_mm_s`. Time constant and exposure smear the scene.
-/// The scene is shifted back by their mean lag, because image formation removes that lag. At rest the scene is
+/// The scene is shifted back by their mean lag, because image formation removes the mean lag. At rest the scene is
 /// unchanged.
 [[nodiscard]] PlateScene in_motion(PlateScene scene, double speed_mm_s, const SensorSpec& spec);
 

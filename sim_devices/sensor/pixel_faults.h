@@ -25,20 +25,20 @@ inline constexpr std::array pixel_fault_kinds{PixelFaultKind::stuck, PixelFaultK
 /// Returns the name of the kind.
 [[nodiscard]] std::string_view to_string(PixelFaultKind kind);
 
-/// Sizes of the faults in units of the sensor's NETD.
+/// Sizes of the faults over NETD: offset, largest stuck level, sd of the added noise, and jump.
 inline constexpr double hot_offset_netd = 20, stuck_reach_netd = 10, noisy_added_netd = 6, blink_netd = 8;
 
 /// Fault of one detector.
 struct PixelFault {
   PixelFaultKind kind = PixelFaultKind::stuck;
   cv::Point detector;
-  double level_k = 0;  ///< stuck, hot: above the surround; blinking: between the two levels
+  double level_k = 0;  ///< stuck: level above the surround; hot: offset; blinking: jump
   int dwell = 0;       ///< blinking: pictures on one level, 4 to 24
   int phase = 0;       ///< blinking: offset of the cycle in pictures
 };
 
-/// Returns the faulty detectors: `defective_pixel_share` of all, a quarter of each kind on average. Positions and sizes
-/// depend only on `defect_seed`.
+/// Returns the faulty detectors, `defective_pixel_share` of all detectors, a quarter of each kind on average. Positions
+/// and kinds depend only on `defect_seed`; sizes also scale with the NETD.
 [[nodiscard]] std::vector<PixelFault> pixel_faults(const SensorSpec& spec);
 
 /// Adds the faults to picture `index`, in kelvin above the surround. All samples of a detector change by the same

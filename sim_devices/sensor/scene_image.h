@@ -22,8 +22,8 @@ namespace todbench {
 /// The method splits a scene into its exact means over the cells of the sampling grid and a remainder in the cells that
 /// an edge crosses. The means are filtered with the response to a unit cell, including all frequencies that sampling
 /// folds. The remainder has mean 0 and is expanded in Legendre polynomials over the cell, with exact coefficients
-/// (Gauss and Green). Each polynomial has its own response, which falls as r^-4 and is kept for 6 samples. The degree
-/// follows from the band: the result agrees with ImageChain to 3e-5 of a contrast (test
+/// (theorem of Gauss and Green). Each polynomial has its own response, which falls as distance^-4 and is kept for 6
+/// samples. The degree follows from the band: the result agrees with ImageChain to 3e-5 of a contrast (test
 /// SceneImager.EqualsTheImageOfThePolygonAlone).
 ///
 /// For an interlaced sensor, each field shows a moving scene at the time of the field (effect_readout.h).

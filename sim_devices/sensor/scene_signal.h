@@ -22,7 +22,7 @@ struct SceneView {
 };
 
 /// Returns the edges of a scene, converted from metres in the scene to samples of the camera; sample (i, j) is centred
-/// at (i, j).
+/// at (i, j). `size`: picture in samples.
 [[nodiscard]] std::vector<StepEdge> edges_in_samples(const FieldScene& scene, const RadianceScale& scale,
                                                      const SensorSpec& spec, const SceneView& view, cv::Size size);
 

@@ -35,8 +35,8 @@ class SensorModel {
 
   /// Returns the size of a picture in samples: detectors times samples per pitch.
   [[nodiscard]] cv::Size size() const;
-  /// Returns the picture before noise at a contrast of 1 K, above the surround, without the displacement by image
-  /// dance. The last few geometries are cached.
+  /// Returns the picture before noise for a contrast of 1 K, in kelvin above the surround, without the displacement by
+  /// image dance. The most recent geometries are cached.
   [[nodiscard]] std::shared_ptr<const cv::Mat1f> unit_signal(const PlateScene& scene) const;
   /// Returns the displacement by image dance of each exposure of picture `index`, in samples; the mean is 0.
   [[nodiscard]] std::vector<cv::Point2d> displacements_px(std::uint64_t index) const;

@@ -13,7 +13,7 @@
 
 namespace todbench {
 
-/// Decision about an effect.
+/// Whether the plan simulates an effect.
 enum class Decision { simulate, skip };
 
 struct EffectDecision {
@@ -22,7 +22,7 @@ struct EffectDecision {
   std::string reason;  ///< a sentence
   /// Change of the 75 % acuity if the effect is skipped; empty if no criterion bounds it.
   std::optional<double> predicted_change_percent;
-  bool on_request = false;  ///< skipped because a list `skip` names it, regardless of the change
+  bool on_request = false;  ///< true if the list `skip` names the effect; it is then skipped regardless of the change
   /// Returns whether the effect is skipped without any change of the sensor.
   [[nodiscard]] bool changes_nothing() const { return decision == Decision::skip && predicted_change_percent == 0.0; }
 };
@@ -35,7 +35,7 @@ struct SensorPlan {
 };
 
 /// Returns the plan that simulates every effect that is not neutral in this sensor. The lists `skip` and `force`
-/// override this; the reasons of the decisions then state this.
+/// override this rule; the reasons of the decisions then state the request.
 [[nodiscard]] SensorPlan full_plan(const SensorSpec& spec, const std::vector<Effect>& skip,
                                    const std::vector<Effect>& force, SceneMotion motion = {});
 

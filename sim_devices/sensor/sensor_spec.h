@@ -54,16 +54,16 @@ struct SensorSpec {
   double field_delay_ms = 0;         ///< time from the even to the odd rows of an interlaced frame; 0: progressive
   double row_noise_k = 0;            ///< sd of an offset per detector row, new in every exposure
   double column_noise_k = 0;         ///< sd of an offset per detector column, new in every exposure
-  double dead_pixel_share = 0;       ///< share of the detectors; the camera shows the mean of their live neighbours
+  double dead_pixel_share = 0;       ///< share of dead detectors; the camera shows the mean of their live neighbours
   /// Share of the detectors that are stuck, hot, noisy or blinking, not hidden (pixel_faults.h).
   double defective_pixel_share = 0;
   int defect_seed = 1;      ///< selects the defective detectors of the array; independent of the run
   int frames_averaged = 1;  ///< exposures averaged into one frame
-  /// Exposures, displaced by half a pitch, that form a picture on a grid twice as fine; a multiple of 4; 0: none.
+  /// Exposures, displaced by half a pitch, that form a picture of twice the sampling; a multiple of 4; 0: none.
   int super_resolution_frames = 0;
   DisplayReconstruction display = DisplayReconstruction::sample_and_hold;
   double display_blur_samples = 0;  ///< Gaussian blur of the display per axis, in displayed samples
-  /// Strength b of the camera's edge filter per axis, on its samples after all noise: taps -b, 1 + 2 b, -b; 0: none.
+  /// Strength b of the camera's edge filter, taps -b, 1 + 2 b, -b along each axis, after all noise; 0: none.
   double edge_boost = 0;
   int microscan = 1;               ///< n: n x n displacements per picture, n^2 as many samples
   int bits = 14;                   ///< significant bits of a count
@@ -78,7 +78,7 @@ struct SensorSpec {
   [[nodiscard]] double pitch_along(PitchAxis axis) const {
     return axis == PitchAxis::y && pitch_y_um > 0 ? pitch_y_um : pitch_um;
   }
-  /// Returns the pitch along y over that along x.
+  /// Returns the ratio of the pitch along y to the pitch along x.
   [[nodiscard]] double pitch_aspect() const { return pitch_along(PitchAxis::y) / pitch_um; }
   [[nodiscard]] double ifov_mrad(PitchAxis axis = PitchAxis::x) const { return pitch_along(axis) / focal_length_mm; }
   /// Returns the number of displayed samples per detector pitch and axis.

@@ -24,10 +24,10 @@ class SceneHolder {
   /// Steps the contrast between the last frame and the next frame. The times of successive steps are spread evenly over
   /// the frame period.
   void step_to(double delta_t_k);
-  /// Returns the scene at a time of the camera's clock, and makes this the present time. During a run the plate moves.
-  /// After a step the scene has the contrast that the detector has reached.
+  /// Returns the scene at a time of the camera's clock, and stores this time as the present time. During a run the
+  /// plate moves. After a step the scene has the contrast that the detector of `spec` has reached.
   [[nodiscard]] PlateScene scene_at(double time_s, const SensorSpec& spec);
-  /// Starts a run along x from the present position of the plate; the next set() ends the run.
+  /// Starts a run along x from the present position of the plate to `to_mm`; the next set() ends the run.
   PlateRun run_along_x(double to_mm, double speed_mm_s);
 
  private:
@@ -43,7 +43,7 @@ class SceneHolder {
 /// Options of a simulated camera.
 struct SimulatedSourceOptions {
   ModuleSensor::OnLine on_error_line{};  ///< receives error output of the program in place of the sensor
-  int dither = 1;                        ///< n: frame k shows the scene displaced by dither_px(n, k)
+  int dither = 1;                        ///< n positions per axis: frame k shows the scene displaced by dither_px(n, k)
 };
 
 /// Returns a camera without delay: frame k is expose(present scene, k) of the model or of the program in place of the

@@ -11,7 +11,7 @@ namespace todbench {
 
 /// Source of the shifts of the frames.
 enum class FrameShifts {
-  measured,  ///< frame_shifts()
+  measured,  ///< estimated by frame_shifts()
   scan,      ///< known: dither_px() of the number of the picture, counted from 0
 };
 
@@ -22,8 +22,8 @@ struct SuperResolutionStageOptions {
   FrameShifts shifts = FrameShifts::measured;
 };
 
-/// Returns the displacement of picture `index` of a camera that is dithered over n x n positions within a pixel, along
-/// x first.
+/// Returns the displacement, in pixels, of picture `index` of a camera that is dithered over n x n positions within a
+/// pixel, along x first.
 [[nodiscard]] cv::Point2d dither_px(int n, std::uint64_t index);
 
 /// Returns a stage that applies super_resolve() to the last frames. Until there are enough frames, it repeats each

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Image formation in the frequency domain, in cycles per detector pitch of each axis: the product of the effects in the
-// plan. Optics depend on the radius in cycles per pitch along x: hypot(u, w / aspect), SensorSpec::pitch_aspect().
+// Image formation at the frequencies (u, w) in cycles per detector pitch of each axis: the product of the effects in
+// the plan. Optics depend on the radius hypot(u, w / SensorSpec::pitch_aspect()), in cycles per pitch along x.
 #pragma once
 
 #include <complex>
@@ -12,7 +12,7 @@
 
 namespace todbench {
 
-/// Optics as a function of radial frequency: product of the planned rows of stage::Optics.
+/// Transfer function of the optics over radial frequency: product of the planned rows with stage::Optics.
 class OpticsMtf {
  public:
   explicit OpticsMtf(const ChainScope& scope);
@@ -24,7 +24,7 @@ class OpticsMtf {
   std::vector<std::function<double(double)>> factors_;
 };
 
-/// Footprint along one axis: product of the planned rows of stage::Footprint.
+/// Transfer function of the footprint along one axis: product of the planned rows with stage::Footprint.
 class FootprintMtf {
  public:
   explicit FootprintMtf(const ChainScope& scope);
@@ -35,25 +35,25 @@ class FootprintMtf {
   std::vector<stage::Footprint> factors_;
 };
 
-/// Returns the transfer functions of the planned rows of stage::Transfer that act in this scene.
+/// Returns the filters of the planned rows with stage::Transfer, without those that do not filter in this scene.
 [[nodiscard]] std::vector<TransferFunction> other_transfers(const ChainScope& scope);
 
 /// Returns the transfer function of the whole image formation. Sequential readout is not included, because it moves
 /// samples.
 [[nodiscard]] TransferFunction sensor_transfer(const SensorSpec& spec, const SensorPlan& plan, int wavelengths,
                                                SceneMotion motion = {});
-/// Returns the same function from a table at the frequencies m / period, |m| <= band, bit for bit. Optics depend only
-/// on the radius, and the footprint is a product over the axes. The function therefore computes only an eighth of the
-/// plane and both axes. With different pitches along x and y no table is used.
+/// Returns sensor_transfer() from a table at the frequencies m / period, |m| <= band, bit for bit. Optics depend only
+/// on the radius, and the footprint is a product over the axes, so only an eighth of the plane and both axes are
+/// computed. With different pitches along x and y no table is used.
 [[nodiscard]] TransferFunction tabulated_transfer(FrequencyLattice lattice, const ChainScope& scope);
 
 /// Returns the highest relevant frequency along either axis, in cycles per pitch: the cut-off of the optics, or the
-/// frequency at which the optics have reduced the signal to the tolerance. If no planned effect limits it, the spectrum
-/// of a sharp shape is unlimited. The limit of 16 cycles per pitch then causes an error near 1/(pi^2 16) at edges.
+/// frequency at which the optics have reduced the signal to the tolerance. If no planned effect limits the spectrum of
+/// a sharp shape, the limit is 16 cycles per pitch, with an error near 1/(pi^2 16) at edges.
 [[nodiscard]] double highest_frequency(const SensorSpec& spec, const SensorPlan& plan, const Accuracy& accuracy);
 
-/// Returns the distance that the target moves from one row to the next, in pitches: the sum over the rows of
-/// stage::Readout.
+/// Returns the distance that the target moves from one row of detectors to the next, in pitches: the sum over the
+/// planned effects with stage::Readout.
 [[nodiscard]] cv::Point2d readout_slope_of(const ChainScope& scope);
 
 /// Returns the sum of the spreads of the planned stages of image formation.

@@ -26,7 +26,7 @@ class MockSystem {
   /// emulated devices if the environment names the library.
   [[nodiscard]] static bool is_preloaded();
   /// Restarts this program in this process with the preload library. Returns only if the library is already loaded or
-  /// cannot be loaded. Call it first, because open files and threads are lost.
+  /// cannot be loaded. Call this function first in main(), because open files and threads are lost.
   static void enter();
   /// Returns the value of LD_PRELOAD for a client.
   [[nodiscard]] static std::string preload_library();

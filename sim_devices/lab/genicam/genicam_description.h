@@ -16,13 +16,13 @@ enum class FeatureKind {
   enumeration,
   command,
   scaled,      ///< a float: raw value of the register times `per_raw`, plus `offset`
-  rate,        ///< a float: 10^6 over the raw value, 0.1 ... 1000 Hz
+  rate,        ///< a float: 10^6 / raw value, in Hz, 0.1 ... 1000
   ieee_float,  ///< a float in eight bytes; value at power-up: `real`
   /// A float, computed by `formula` from two variables: VALUE, stored as ieee_float, and CHOICE, the register of the
   /// feature `choice`.
   formula,
   text,  ///< `bytes` characters
-  /// A Boolean: bit `bit` of the register, counted from the highest as GenICam does for big-endian registers.
+  /// A Boolean: bit number `bit` of the register, counted from the highest bit, as in big-endian GenICam registers.
   bit,
   chunk_integer,  ///< an integer of eight bytes in the chunk `chunk_id` after every frame
   chunk_scaled,   ///< a signed number of four bytes in a chunk, times `per_raw`
@@ -53,7 +53,7 @@ struct CameraFeature {
   std::string formula = {}, choice = {};
 };
 
-/// Returns whether the feature has its own register. Chunks follow frames, and a bit is part of another register.
+/// Returns whether the feature has its own register: false for a chunk, and for a bit, which is part of a register.
 [[nodiscard]] bool owns_register(const CameraFeature& feature);
 /// Returns the size of the feature's register in bytes.
 [[nodiscard]] std::uint32_t register_bytes(const CameraFeature& feature);

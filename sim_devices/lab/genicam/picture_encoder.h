@@ -16,7 +16,7 @@ enum class SignalKind {
   linear,       ///< kelvin / `kelvin_per_signal`
   radiometric,  ///< by the Planck-like formula
   as_exposed,   ///< unchanged counts of the exposure
-  tenths,       ///< counts of the exposure divided by ten
+  tenths,       ///< counts of the exposure divided by ten, rounded
 };
 
 /// Conversion of counts to eight bits.
@@ -25,7 +25,7 @@ enum class GainControl {
   linear,  ///< range_of_means() to grey levels 26 ... 230, at most four grey levels per count
 };
 
-/// Lowest and highest mean of 3 x 3 counts within the picture: the range of the scene for a gain control.
+/// Lowest and highest mean over 3 x 3 counts in the picture: the range of the scene for a gain control.
 struct CountRange {
   double low = 0, high = 0;
 };
@@ -41,7 +41,7 @@ struct EncoderSettings {
   unsigned significant_bits = 14;            ///< larger values are clipped, also to the range of the format
   PixelFormat format = PixelFormat::mono16;  ///< mono8: the highest eight of the significant bits
   GainControl gain = GainControl::none;      ///< gain control for mono8, applied to the counts of the exposure
-  bool test_ramp = false;  ///< pixel x of a row has the count x, modulo full scale, instead of the picture
+  bool test_ramp = false;  ///< replaces the picture: pixel x of a row has the count x, modulo full scale
   bool averages = false;   ///< averages with the previous picture, as noise reduction does
   bool big_endian = false;
   bool operator==(const EncoderSettings&) const = default;
@@ -54,7 +54,7 @@ class PictureEncoder {
   PictureEncoder(double kelvin_per_count, double offset_k, PlanckScale radiometric)
       : kelvin_per_count_(kelvin_per_count), offset_k_(offset_k), radiometric_(radiometric) {}
 
-  /// Returns the bytes of an exposure.
+  /// Returns the bytes of an exposure with these settings.
   [[nodiscard]] std::vector<std::uint8_t> encode(const cv::Mat1w& counts, const EncoderSettings& settings);
 
  private:

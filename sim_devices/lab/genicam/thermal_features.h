@@ -40,7 +40,7 @@ template <typename Config>
           .offset_k = config.offset_k};
 }
 
-/// Builders of features. `address` is the address of the feature's register.
+/// Builders of features. `address`: address of the register of the feature; `initial`: raw value at power-up.
 namespace features {
 
 using Entries = std::vector<std::pair<std::string, std::uint32_t>>;
@@ -69,7 +69,7 @@ using Entries = std::vector<std::pair<std::string, std::uint32_t>>;
 /// Addresses of the registers of thermal_camera().
 struct ThermalRegisters {
   std::uint32_t vendor = 0, model = 0, firmware = 0, serial = 0;
-  std::uint32_t name_bytes = 0, serial_bytes = 0;
+  std::uint32_t name_bytes = 0, serial_bytes = 0;  ///< lengths of the text registers in bytes
   std::uint32_t width = 0, height = 0, offset_x = 0, offset_y = 0, pixel_format = 0, largest_count = 0;
   std::uint32_t payload_size = 0, acquisition_mode = 0, acquisition = 0, period_us = 0;
   std::uint32_t ir_format = 0, linear_scale = 0, linear_offset = 0, nuc_mode = 0, nuc_action = 0;
@@ -89,7 +89,7 @@ inline constexpr std::uint32_t acquisition_continuous = 1;
 
 /// Returns the features of a category, to be extended. Adds the category if it does not exist.
 [[nodiscard]] std::vector<CameraFeature>& more_of(CameraDescription& camera, const std::string& category);
-/// Returns a feature of the description. Precondition: it exists.
+/// Returns the feature with this name. Precondition: the description contains the feature.
 [[nodiscard]] CameraFeature& feature_named(CameraDescription& camera, const std::string& name);
 
 /// Checks the configuration of an emulated camera; `who` begins the message. Errors: `invalid_input`.

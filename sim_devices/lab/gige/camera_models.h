@@ -36,7 +36,7 @@ struct ModelRegisters {
   std::uint32_t noise_reduction = 0;
   std::uint32_t nuc_mode = 0, nuc_action = 0, nuc_action_long = 0;
   std::uint32_t nuc_mode_automatic = 0;  ///< not an address: value of the register nuc_mode for automatic corrections
-  std::uint32_t sensor_temperature = 0;  ///< raw/10 degrees Celsius
+  std::uint32_t sensor_temperature = 0;  ///< raw / 10 in degrees Celsius
   std::uint32_t chunk_mode = 0;
   std::uint32_t largest_count = 0;
 };
@@ -44,7 +44,7 @@ struct ModelRegisters {
 /// Ids of the chunks after a frame, if chunk mode is on.
 inline constexpr std::uint32_t chunk_image = 0x00000001;
 inline constexpr std::uint32_t chunk_exposure = 0xA0000001;            ///< ChunkExposureIndex
-inline constexpr std::uint32_t chunk_sensor_temperature = 0xA0000002;  ///< ChunkSensorTemperature, raw/10
+inline constexpr std::uint32_t chunk_sensor_temperature = 0xA0000002;  ///< ChunkSensorTemperature, 0.1 degrees Celsius
 inline constexpr std::uint32_t chunk_nuc_active = 0xA0000003;          ///< ChunkNUCActive
 
 /// Description of a model with its registers.
@@ -53,7 +53,7 @@ struct ModelDescription {
   ModelRegisters registers;
 };
 
-/// Returns registers and features of a model. The family's name replaces an empty vendor or model name.
+/// Returns registers and features of a model. The name of the model's family replaces an empty vendor or model name.
 [[nodiscard]] ModelDescription describe_camera(CameraModel model, const ThermalCameraOptions& options);
 
 /// Returns the frames per second for a value of SensorVideoStandard of the Ax5; 0 for an unknown value.

@@ -29,7 +29,7 @@ struct EmulatedGigeCameraConfig {
   /// Frames for which the last picture is repeated after a correction; 0.5 s in real cameras.
   int nuc_freeze_frames = 0;
   double device_temperature_c = 30;
-  /// First 16-bit frame id. The id wraps after 136 frames, so every longer run tests the unwrapping in the client.
+  /// First 16-bit frame id. It wraps after 136 frames, so every longer run tests how the client unwraps ids.
   std::uint16_t first_frame_id = 65400;
 };
 

@@ -25,7 +25,7 @@ struct GvcpEndpoint {
 /// Callbacks to the rest of the camera. Called without locks on the thread that calls GvcpDevice.
 struct GvcpHandlers {
   std::function<void(std::uint32_t address, std::uint32_t value)> on_write;  ///< after the value is stored
-  std::function<void(const ResendRequest&)> on_resend;                       ///< from the controller's host only
+  std::function<void(const ResendRequest&)> on_resend;                       ///< only from the controller's host
   std::function<void()> on_control_lost;  ///< the controller left, or sent no message for the heartbeat timeout
 };
 
@@ -39,7 +39,7 @@ class GvcpDevice {
   /// Returns the response to a datagram; empty if there is none.
   [[nodiscard]] std::optional<Bytes> answer(std::span<const std::uint8_t> datagram, const GvcpEndpoint& from,
                                             Clock::time_point now);
-  /// Ends the control of a client that sent no message for the heartbeat timeout.
+  /// Removes the controller if it sent no message for the heartbeat timeout.
   void check_heartbeat(Clock::time_point now);
   /// Removes the controller without a callback, as a reset does.
   void forget_controller();
@@ -67,7 +67,7 @@ class GvcpDevice {
   [[nodiscard]] GvcpStatus change_privilege(std::uint32_t value, const GvcpEndpoint& from);
   [[nodiscard]] bool is_controller(const GvcpEndpoint& from) const;
   /// Returns whether a sender may request packets again. Any port of the controller's host may do so, because the
-  /// client's stream socket sends these requests.
+  /// requests come from the client's stream socket.
   [[nodiscard]] bool may_ask_again(const GvcpEndpoint& from) const;
 
   RegisterMap& registers_;

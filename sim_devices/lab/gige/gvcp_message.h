@@ -44,11 +44,11 @@ struct GvcpRequest {
 /// Longest payload of a message: a READMEM of 536 bytes with its address.
 inline constexpr std::size_t gvcp_most_payload_bytes = 540;
 
-/// Parses a request. Empty if the datagram does not begin with the key 0x42, has the id 0, or does not have the length
-/// that it states. These datagrams get no response.
+/// Parses a request. Empty if the datagram does not begin with the key 0x42, has the id 0, or has a length other than
+/// the stated length. A camera does not respond to such a datagram.
 [[nodiscard]] std::optional<GvcpRequest> parse_gvcp_request(std::span<const std::uint8_t> datagram);
 
-/// Returns the acknowledge of a request. Its command number is the request's command number plus one.
+/// Returns the acknowledge of a request. Its command number is the number of the request plus one.
 [[nodiscard]] Bytes gvcp_acknowledge(const GvcpRequest& request, GvcpStatus status,
                                      std::span<const std::uint8_t> payload);
 

@@ -41,17 +41,17 @@ struct GvspCameraConfig {
   double kelvin_per_count = 0.04;                 ///< scale of the counts of the exposures
   double offset_k = 0;                            ///< temperature of count 0
   PlanckScale radiometric{366545, 1428, 1, 342};  ///< scale of counts that are not linear in temperature
-  int nuc_freeze_frames = 25;            ///< frames for which the last picture is repeated after a correction: 0.5 s
+  int nuc_freeze_frames = 25;            ///< frames for which a correction repeats the last picture; 0.5 s by default
   unsigned automatic_nuc_frames = 3600;  ///< frames between automatic corrections
   std::optional<PixelFormat> only_format{};           ///< replaces the formats of the model
   std::chrono::milliseconds heartbeat_timeout{3000};  ///< heartbeat timeout at power-up
   std::uint16_t first_block_id = 65400;               ///< the 16-bit id wraps from 65535 to 1
   int row_padding_bytes = 0;                          ///< sent after every row, counted in the payload size
   int image_padding_bytes = 0;                        ///< sent after the last row, counted in the payload size
-  bool states_padding = true;                         ///< the leader states the padding
+  bool states_padding = true;                         ///< whether the leader states row and image padding
   int rows_not_sent = 0;                              ///< rows that the height register counts but the leaders do not
-  bool chunks_at_power_up = false;                    ///< ChunkModeActive
-  std::uint16_t chunk_payload_type = 0x4001;          ///< 4: GigE Vision 1.x, whose leader states no size
+  bool chunks_at_power_up = false;                    ///< ChunkModeActive at power-up
+  std::uint16_t chunk_payload_type = 0x4001;          ///< with chunks; 4: GigE Vision 1.x, whose leader states no size
   ResendPolicy resend = ResendPolicy::answer;
   std::string description = {};               ///< served description, text or ZIP archive; empty: the model's
   std::string description_url = {};           ///< stated location of the description; empty: the true location
@@ -62,12 +62,12 @@ struct GvspCameraConfig {
 
 /// Counters since power-up.
 struct GvspCameraCounts {
-  std::uint64_t exposures = 0;         ///< exposed frames, sent or not
-  std::uint64_t failed_exposures = 0;  ///< wrong geometry or an exception; sent as zeros
+  std::uint64_t exposures = 0;         ///< exposed frames, sent or not sent
+  std::uint64_t failed_exposures = 0;  ///< exposures with wrong geometry or an exception; sent as zeros
   std::uint64_t corrections = 0;       ///< non-uniformity corrections, commanded and automatic
   std::uint64_t resend_requests = 0, packets_resent = 0;
   std::uint64_t controls_lost = 0;   ///< controllers that left or sent no more messages
-  std::uint64_t late_exposures = 0;  ///< begun more than a frame period late
+  std::uint64_t late_exposures = 0;  ///< exposures that began more than a frame period late
   GvspFaultCounts faults;
 };
 
@@ -103,7 +103,7 @@ class GvspCamera {
 
   /// Sets the faults from the next exposure on; {} ends them.
   void set_faults(const GvspFaults& faults);
-  /// Sets the block id of the next frame. The clock restarts at 0 or continues.
+  /// Sets the block id of the next frame. `clock`: whether the clock continues or restarts at 0.
   void restart_numbers(std::uint16_t block_id, ClockRestart clock);
   /// Pulls the cable for this time: no data are received or sent, but the camera continues.
   void pull_cable(std::chrono::milliseconds time);

@@ -20,10 +20,10 @@
 
 namespace todbench {
 
-/// Size of a stream packet in bytes below which no header fits.
+/// Smallest size of a stream packet in bytes; no header fits into a smaller packet.
 inline constexpr std::uint32_t gvsp_least_packet_bytes = 46;
 
-/// Returns the frame period in whole microseconds, as exposure_index() assumes.
+/// Returns the frame period in ns, rounded to whole microseconds as exposure_index() assumes.
 [[nodiscard]] std::uint64_t gvsp_period_ns(double rate_hz);
 
 /// State that the control thread and the streaming thread of the camera share.
@@ -47,7 +47,7 @@ struct GvspCamera::State {
   std::mutex mutex;  ///< guards the members below
   std::condition_variable_any changed;
   bool acquiring = false;
-  std::uint64_t acquisitions = 0;  ///< number of starts
+  std::uint64_t acquisitions = 0;  ///< number of acquisition starts
   std::uint64_t clock_ns = 0;
   std::uint64_t period_ns = 0;
   std::uint16_t next_block_id = 1;

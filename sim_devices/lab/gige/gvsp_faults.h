@@ -24,7 +24,7 @@ struct GvspFaults {
   bool operator==(const GvspFaults&) const = default;
 };
 
-/// Counts of these faults, in the same order.
+/// Counts of the faults of GvspFaults, in the same order.
 struct GvspFaultCounts {
   std::uint64_t packets_lost = 0, packets_duplicated = 0, packets_reordered = 0;
   std::uint64_t late_leaders = 0, frames_lost = 0, frames_frozen = 0, frames_swapped = 0, frames_wrong_size = 0;
@@ -35,15 +35,15 @@ struct GvspFaultCounts {
 /// Faults of one exposure as a whole.
 struct FrameFaults {
   bool lost = false, frozen = false, swapped_bytes = false, wrong_size = false, late_leader = false;
-  std::size_t surplus_bytes = 0;
+  std::size_t surplus_bytes = 0;  ///< undeclared bytes after the payload
 };
 
 /// Draws the faults of an exposure. The faults depend only on `random` and `exposure`, not on earlier calls.
 [[nodiscard]] FrameFaults draw_frame_faults(const GvspFaults& faults, const RandomStream& random,
                                             std::uint64_t exposure);
 
-/// Order in which the packets of a frame are sent: ids, some of them missing, repeated or exchanged, and the numbers of
-/// these faults.
+/// Order in which the packets of a frame are sent: packet ids, some of them missing, repeated or exchanged, and the
+/// numbers of missing, repeated and exchanged packets.
 struct PacketSchedule {
   std::vector<std::uint32_t> ids;
   std::uint64_t lost = 0, duplicated = 0, reordered = 0;

@@ -34,8 +34,8 @@ struct GvspFrame {
   [[nodiscard]] std::uint32_t packets() const;
 };
 
-/// A datagram in two parts, which avoids a second copy of the pixels: its header (all of it for leader and trailer) and
-/// a slice of GvspFrame::data.
+/// A datagram in two parts, which avoids a second copy of the pixels: its head (the whole content of leader and
+/// trailer) and a slice of GvspFrame::data.
 struct GvspPacket {
   std::array<std::uint8_t, 44> head{};
   std::size_t head_bytes = 0;

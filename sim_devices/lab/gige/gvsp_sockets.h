@@ -17,7 +17,7 @@ namespace todbench {
 
 /// Interface of this host.
 struct LocalInterface {
-  int index = 0;
+  int index = 0;                        ///< number of the interface in the system
   std::uint32_t address = 0, mask = 0;  ///< host byte order
 };
 /// Returns the interface that is up and has this address; empty if there is none.
@@ -34,7 +34,7 @@ class ControlSockets {
  public:
   /// Opens the sockets. Errors: `not_found` (port busy).
   [[nodiscard]] static Result<ControlSockets> open(const LocalInterface& where);
-  /// Returns the next message; empty if none arrives within `patience`, or after wake().
+  /// Returns the next message; empty if none arrives within `patience` or if wake() is called.
   [[nodiscard]] std::optional<GvcpDatagram> receive(std::chrono::milliseconds patience);
   void send(std::span<const std::uint8_t> datagram, const GvcpEndpoint& to);
   /// Ends a waiting receive(); any thread.
@@ -49,9 +49,9 @@ class ControlSockets {
 /// Socket that sends frames.
 class StreamSocket {
  public:
-  /// Opens a socket at this address.
+  /// Opens a socket at `address` (host byte order), any port. Errors: `not_found`.
   [[nodiscard]] static Result<StreamSocket> open(std::uint32_t address);
-  /// Sends the packets in order with `pause` between them. Any thread, one at a time.
+  /// Sends the packets in order with `pause` between packets. Any thread, one call at a time.
   void send(std::span<const GvspPacket> packets, const GvcpEndpoint& to, std::chrono::nanoseconds pause);
   [[nodiscard]] std::uint16_t port() const { return port_; }
 

@@ -15,9 +15,9 @@
 
 namespace todbench {
 
-/// Memory with rules. All registers of the standard (0 ... 0xAFF and stream channel 0 at 0xD00 ... 0xD2F) can be read.
-/// They can be written if the standard allows it. The registers of the camera follow their table. Other addresses do
-/// not exist. Thread-safe.
+/// Memory with rules for access. All registers of the standard (0 ... 0xAFF and stream channel 0 at 0xD00 ... 0xD2F)
+/// can be read, and written if the standard allows writing. The registers of the camera follow the table of its
+/// features. Other addresses do not exist. Thread-safe.
 class RegisterMap {
  public:
   /// Sets the registers of the features to their power-up values and places `xml` at `xml_address`.
@@ -34,7 +34,7 @@ class RegisterMap {
   void lock_transport();
   void unlock_transport();
 
-  /// Restores the power-up values of the features' registers.
+  /// Restores the power-up values of the registers of features.
   void power_up();
 
   /// Return and set registers for the camera itself, without rules. Addresses below 64 KiB.

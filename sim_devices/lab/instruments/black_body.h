@@ -55,9 +55,9 @@ struct BlackBodyState {
   bool is_stable = true;
 };
 
-/// Instrument that serves from creation to destruction. The instrument starts stable at a difference of 0. After a
-/// set-point s at time 0 the difference is d(t) = s + (d(0) - s) exp(-t/tau). The difference does not overshoot. When
-/// it is stable, the remaining change is below the window.
+/// Instrument that serves clients from creation to destruction. The instrument starts stable at a difference of 0.
+/// After a set-point s at time 0 the difference is d(t) = s + (d(0) - s) exp(-t / tau), tau: time_constant_s, without
+/// overshoot. When the difference is stable, the remaining change is below the window.
 class BlackBody {
   struct Settling {
     double start_k = 0, set_point_k = 0;  ///< as indicated

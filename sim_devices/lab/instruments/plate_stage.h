@@ -46,14 +46,14 @@ struct PlateStageOptions {
   double plate_change_s = 5;           ///< duration of a change of the plate
   double mounting_change_s = 3;        ///< duration of a change of the mounting
   double slowest_run_mm_per_s = 0.01;  ///< the fastest run has the speed of the table
-  double run_jitter_mm = 0;  ///< standard deviation of the position during a run, a new random value every millisecond
-  std::uint64_t seed = 1;    ///< seed of the jitter
+  double run_jitter_mm = 0;            ///< sd of the position during a run, with a new random value every millisecond
+  std::uint64_t seed = 1;              ///< seed of the jitter
   /// Error of the stage: returns the real position of the plate for the indicated position `indicated_mm`. The result
   /// must be finite. Called from any thread. Empty: no error. The owner of the scene applies this error; the encoders
   /// do not include it.
   std::function<cv::Point2d(cv::Point2d indicated_mm)> real_place_mm{};
-  /// Time base of runs in seconds: the present time of the clock that stamps the camera's frames. Called from any
-  /// thread. Empty: `now`.
+  /// Time base of runs in seconds: returns the present time of the clock that stamps the camera's frames. Called from
+  /// any thread. Empty: runs use `now`.
   std::function<double()> camera_clock_s = {};
   bool has_trigger = true;  ///< MEASure:SCAN? states the start of a run in the camera's clock
   /// Time base of all movements. Called from any thread. Never runs backwards.
@@ -64,12 +64,12 @@ struct PlateStageOptions {
 struct PlateStageState {
   std::string plate;                       ///< plate in the beam; the old plate until the change is complete
   Mounting mounting = Mounting::identity;  ///< present mounting; the old mounting until the change is complete
-  cv::Point2d shift_mm{0, 0};
-  double speed_mm_per_s = 0;  ///< speed of a run along x, with sign; 0 for other movements of the table
-  bool is_moving = false;     ///< a part moves or is not yet at rest
+  cv::Point2d shift_mm{0, 0};              ///< indicated position of the table; 0, 0: middle of the travel
+  double speed_mm_per_s = 0;               ///< speed of a run along x, with sign; 0 for other movements of the table
+  bool is_moving = false;                  ///< true if the table, the plate or the mounting moves or is not yet at rest
 };
 
-/// Instrument that serves from creation to destruction. The table moves to a new position in a straight line at
+/// Instrument that serves clients from creation to destruction. The table moves to a new position in a straight line at
 /// constant speed, starting from its present position.
 class PlateStage {
   template <typename T>

@@ -24,8 +24,8 @@ struct ScpiServerOptions {
   std::size_t most_unread = 64 * 1024;
 };
 
-/// Server of one instrument on its own thread, until it is destroyed. Commands of all clients run on that thread, one
-/// at a time. All received bytes are untrusted: the options limit the memory per client.
+/// Server of one instrument, with its own thread, from start() to destruction. Commands of all clients run on this
+/// thread, one at a time. All received bytes are untrusted: the options limit the memory per client.
 class ScpiServer {
   struct Listening {
     Descriptor socket;

@@ -21,8 +21,8 @@ struct SeekCameraConfig {
   SeekModel model = SeekModel::compact_pro;
   std::string serial = "TB0001";    ///< serial number in the descriptors; empty: only the chip has a number
   double frame_rate_hz = 50;        ///< 0.1 ... 1000; real cameras send 7 ... 15
-  int shutter_interval_frames = 0;  ///< frames after which the shutter closes for one frame; 0: only at the start
-  int fixed_pattern_counts = 64;    ///< largest offset of a pixel, which the shutter frame shows
+  int shutter_interval_frames = 0;  ///< frames between closings of the shutter for one frame; 0: only at the start
+  int fixed_pattern_counts = 64;    ///< largest offset of a pixel in counts; the shutter frame shows the offsets
   std::vector<cv::Point> dead{};    ///< dead pixels of the picture; sent as zero
   /// Counter of the first frame after power-up. The counter wraps soon, so every longer run tests the unwrapping in the
   /// client.
@@ -30,8 +30,8 @@ struct SeekCameraConfig {
 };
 
 /// Camera that sends, after its initialisation, a calibration frame, a frame of a different kind, a shutter frame, and
-/// then pictures. The camera exposes only on request, at the earliest one frame period after the previous frame. A slow
-/// client therefore loses no frames. Methods may be called from any thread.
+/// then pictures. The camera exposes only if the host requests data, at the earliest one frame period after the
+/// previous frame. A slow client therefore loses no frames. Methods may be called from any thread.
 class SeekCamera : public UsbDevice {
  public:
   /// Returns the picture of exposure `index`, with counts up to 16383. The index counts every frame since power-up,
@@ -50,7 +50,7 @@ class SeekCamera : public UsbDevice {
   virtual void truncate_next_frame(std::size_t bytes) = 0;
 };
 
-/// Frames that the camera sends before the first picture.
+/// Number of frames that the camera sends before the first picture.
 inline constexpr int seek_calibration_frames = 3;
 
 }  // namespace todbench

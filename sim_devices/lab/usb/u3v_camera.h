@@ -30,18 +30,18 @@ enum class U3vIdentityNodes {
 struct U3vCameraConfig {
   std::string vendor = "todbench", model = "Emulated U3V", serial = "TB0001", firmware = "1.0";
   int width = 320, height = 240;
-  int significant_bits = 14;  ///< 14 offers Mono14 first, 15 and 16 Mono16
-  double frame_rate_hz = 50;  ///< frame rate at power-up; 0.1 ... 1000
-  double kelvin_per_count = 0.01, offset_k = 0;
-  int nuc_freeze_frames = 0;  ///< frames for which the last picture is repeated after a correction
+  int significant_bits = 14;                     ///< pixel formats: 14 offers Mono14 first, 15 and 16 Mono16
+  double frame_rate_hz = 50;                     ///< frame rate at power-up; 0.1 ... 1000
+  double kelvin_per_count = 0.01, offset_k = 0;  ///< scale of the counts; temperature of count 0
+  int nuc_freeze_frames = 0;                     ///< frames for which the last picture is repeated after a correction
   U3vDescription description = U3vDescription::plain;
   std::string description_text = {};           ///< the served description; empty: the camera's own
-  std::uint64_t stated_description_bytes = 0;  ///< 0: the true size
+  std::uint64_t stated_description_bytes = 0;  ///< size of the description that the camera states; 0: the true size
   U3vIdentityNodes identity_nodes = U3vIdentityNodes::present;
   std::optional<std::string> usb_serial{};  ///< serial number in the USB descriptors if it differs from `serial`
-  int row_padding_bytes = 0;                ///< sent after every row, counted in the payload size
-  bool states_padding = true;               ///< the leader states the padding
-  /// Wrong contents of the stream registers at power-up: address of a 32-bit register, value.
+  int row_padding_bytes = 0;                ///< bytes after every row, counted in the payload size
+  bool states_padding = true;               ///< whether the leader of a frame states the row padding
+  /// Wrong contents of the stream registers at power-up: value by address of a 32-bit register.
   std::map<std::uint64_t, std::uint32_t> false_registers{};
 };
 
@@ -67,7 +67,7 @@ class U3vCamera : public UsbDevice {
   virtual void truncate_next_frame(std::size_t bytes) = 0;
   /// Appends this many undeclared bytes to the payload of the next frame.
   virtual void lengthen_next_frame(std::size_t bytes) = 0;
-  /// Sets the block id of the next frame; the clock is unchanged.
+  /// Sets the block id of the next frame, from which later ids count on; the clock is unchanged.
   virtual void restart_numbers(std::uint64_t block_id) = 0;
 };
 

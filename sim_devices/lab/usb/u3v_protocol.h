@@ -49,7 +49,7 @@ void put(UsbBytes& bytes, T value) {
   }
 }
 
-/// Returns the number at an offset. Precondition: it lies within the bytes.
+/// Returns the number at an offset, lowest byte first. Precondition: the number lies within the bytes.
 template <typename T>
 T get(std::span<const std::uint8_t> bytes, std::size_t offset) {
   std::uint64_t value = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Model of a USB device without a bus: descriptors, control requests and bulk transfers. A carrier connects it to a
-// host: a usbfs emulation, or a USB/IP server with a real kernel at the other end.
+// Model of a USB device without a bus: descriptors, control requests and bulk transfers. A usbfs emulation, or a USB/IP
+// server with a real kernel at the other end, connects the model to a host.
 #pragma once
 
 #include <cstdint>
@@ -47,25 +47,25 @@ class UsbDevice {
   [[nodiscard]] virtual const UsbDescriptors& descriptors() const = 0;
 
   /// Handles a control request. `data`: the bytes of the OUT stage. Returns the bytes of the IN stage (empty bytes for
-  /// an accepted OUT request). If it returns no value, usb_control() handles standard requests and stalls other
-  /// requests. CLEAR_FEATURE, SET_CONFIGURATION and SET_INTERFACE are passed to this function first, for their effect
-  /// on the device.
+  /// an accepted OUT request). For a request without a returned value, usb_control() handles standard requests and
+  /// stalls other requests. CLEAR_FEATURE, SET_CONFIGURATION and SET_INTERFACE are passed to this function first, so
+  /// that the device can react.
   [[nodiscard]] virtual std::optional<UsbBytes> control(const UsbSetup& setup, std::span<const std::uint8_t> data) = 0;
 
   /// Handles one bulk OUT transfer to `endpoint` (0x01 ... 0x0F). Returns false to stall.
   [[nodiscard]] virtual bool bulk_out(std::uint8_t endpoint, std::span<const std::uint8_t> data) = 0;
 
   /// Handles one bulk IN transfer from `endpoint` (0x81 ... 0x8F) of at most `length` bytes. Waits for bytes or for
-  /// `stop`. Fewer bytes than requested are a short packet, which ends the transfer; no bytes are a zero-length packet.
-  /// Returns no value if the endpoint stalls or `stop` was requested; no byte is consumed then.
+  /// `stop`. Fewer bytes than requested are a short packet, which ends the transfer; an empty vector is a zero-length
+  /// packet. Returns no value, and consumes no byte, if the endpoint stalls or `stop` was requested.
   [[nodiscard]] virtual std::optional<UsbBytes> bulk_in(std::uint8_t endpoint, std::size_t length,
                                                         std::stop_token stop) = 0;
 };
 
-/// Performs a control transfer for a carrier. The request is passed to the device first. Standard requests (USB 2.0,
-/// section 9.4) that the device does not handle are handled with its descriptors. These are GET_DESCRIPTOR of device,
-/// configuration and strings, GET_STATUS, GET_CONFIGURATION and GET_INTERFACE; requests that set values are accepted.
-/// Returns at most setup.length bytes; no value means STALL.
+/// Performs a control transfer for the code that connects the device to a host. The request is passed to the device
+/// first. Standard requests (USB 2.0, section 9.4) that the device does not handle are answered from its descriptors:
+/// GET_DESCRIPTOR of device, configuration and strings, GET_STATUS, GET_CONFIGURATION, GET_INTERFACE; requests that set
+/// values are accepted. Returns at most setup.length bytes; no value means STALL.
 [[nodiscard]] std::optional<UsbBytes> usb_control(UsbDevice& device, const UsbSetup& setup,
                                                   std::span<const std::uint8_t> data);
 

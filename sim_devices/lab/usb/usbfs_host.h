@@ -12,7 +12,7 @@
 
 namespace todbench {
 
-/// Device in a port, from creation to unplug() or destruction. Methods may be called from any thread.
+/// Device in a USB port, from creation to unplug() or destruction. Methods may be called from any thread.
 ///
 /// As with the kernel, transfers of an endpoint are performed in the order of submission, and endpoints run in
 /// parallel. A discarded transfer ends with ENOENT. A second program that claims a claimed interface receives EBUSY.

@@ -39,10 +39,10 @@ struct PluggedUsbDevice::State {
   std::mutex mutex;  ///< guards all members below
   std::condition_variable_any changed;
   bool unplugged = false;
-  std::map<std::uint8_t, std::deque<UsbfsTransferPtr>> waiting;  ///< by endpoint
-  std::map<std::uint8_t, UsbfsTransfer*> performing;
-  std::deque<UsbfsTransferPtr> done;
-  std::map<unsigned, UMockdevIoctlClient*> claims;
+  std::map<std::uint8_t, std::deque<UsbfsTransferPtr>> waiting;  ///< transfers not yet begun, by endpoint
+  std::map<std::uint8_t, UsbfsTransfer*> performing;             ///< present transfer of each endpoint, or null
+  std::deque<UsbfsTransferPtr> done;                             ///< finished transfers that wait to be reaped
+  std::map<unsigned, UMockdevIoctlClient*> claims;               ///< client that claimed an interface, by interface
   struct Reaper {
     UMockdevIoctlClient* client;
     std::optional<std::chrono::steady_clock::time_point> patience_ends;  ///< empty: waits without limit

@@ -10,7 +10,7 @@ namespace todbench {
 
 /// Returns the node of a device: "/dev/bus/usb/001/051" for device number 51.
 [[nodiscard]] std::string usbfs_node(int number);
-/// Returns the path below /sys.
+/// Returns the path of a device below /sys.
 [[nodiscard]] std::string usbfs_sys_path(int number);
 /// Returns the description of the device as in sysfs, in the format of umockdev. Precondition: a device descriptor of
 /// 18 bytes.

@@ -48,13 +48,13 @@ using UsbfsTransferPtr = std::unique_ptr<UsbfsTransfer>;
 /// Returns the setup packet. Precondition: at least usb_setup_size bytes.
 [[nodiscard]] UsbSetup usb_setup_of(const UsbBytes& bytes);
 
-/// Returns the client's memory to which a pointer refers; null if it cannot be read. The caller releases the reference.
+/// Returns the client's memory to which a pointer at `offset` of `data` refers; null if unreadable. Caller unrefs it.
 [[nodiscard]] UMockdevIoctlData* client_memory(UMockdevIoctlData* data, std::size_t offset, std::size_t size);
 
-/// Performs a transfer with the device. Blocks until the device is done or the transfer is cancelled.
+/// Performs a transfer with the device. Blocks until the transfer is finished or cancelled.
 void exchange(UsbDevice& device, UsbfsTransfer& transfer);
 
-/// Writes the result into the client's memory and returns the URB's address to the client. Returns 0 or an errno.
+/// Writes the result into the memory of the client and returns the URB address to the client. Returns 0 or an errno.
 [[nodiscard]] int hand_over(UMockdevIoctlClient* client, UsbfsTransfer& transfer);
 
 }  // namespace todbench

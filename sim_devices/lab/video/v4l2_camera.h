@@ -26,11 +26,11 @@ struct VideoDriverQuirks {
   std::string driver = "uvcvideo";
 };
 
-/// Camera that serves frames during its lifetime. The node is a regular file, so that buffers can be mapped. Therefore
-/// poll() on it is always ready, and a DQBUF without a frame waits for up to 10 ms before it returns EAGAIN. Otherwise
-/// the camera behaves like a driver. Buffers are filled in the order in which they were queued. An exposure without a
-/// free buffer is lost and causes a gap in the sequence. A second program receives EBUSY while the first program
-/// streams. An unplugged camera returns ENODEV, and udev announces its removal.
+/// Camera that serves frames during its lifetime. The device node is a regular file, so that buffers can be mapped.
+/// Therefore poll() on the node is always ready, and a DQBUF without a frame waits for up to 10 ms before it returns
+/// EAGAIN. Otherwise the camera behaves like a driver. Buffers are filled in the order in which they were queued. An
+/// exposure without a free buffer is lost and causes a gap in the sequence. A second program receives EBUSY while the
+/// first program streams. An unplugged camera returns ENODEV, and udev announces its removal.
 ///
 /// The timestamps of the buffers (of unknown base, in the terms of V4L2) are times of the camera's clock. The clock
 /// advances by one frame period per exposure from power-up: exposure k has the time (k + 1) / rate. The camera exposes
@@ -67,8 +67,8 @@ class EmulatedV4l2Camera {
   void lose_exposures(unsigned count);
   /// Sends the next frame with only this many bytes and the driver's mark for missing data.
   void truncate_next_frame(std::uint32_t bytes);
-  /// Sends the next frame with only this many bytes and no mark. Drivers do this if a transfer ended early although no
-  /// data were lost on the bus.
+  /// Sends the next frame with only this many bytes and without the mark. Drivers do so if a transfer ended early
+  /// although no data were lost on the bus.
   void shorten_next_frame(std::uint32_t bytes);
   /// States this size for the next frame, regardless of its true size.
   void misstate_next_frame(std::uint32_t bytes);

@@ -45,12 +45,12 @@ struct EmulatedV4l2Camera::State {
   std::uint32_t buffers = 0;
   std::uint32_t buffer_bytes = 0;
   bool streaming = false;
-  std::deque<std::uint32_t> queued;
-  std::deque<v4l2_buffer> done;
+  std::deque<std::uint32_t> queued;  ///< indices of the empty buffers, in the order of use
+  std::deque<v4l2_buffer> done;      ///< filled buffers that wait for DQBUF
   std::uint32_t sequence = 0;
   std::uint64_t exposures = 0, failed = 0, corrections = 0, last_correction = 0;
   int frozen_frames = 0;
-  unsigned to_lose = 0;
+  unsigned to_lose = 0;  ///< number of next exposures that are not sent
   std::optional<std::uint32_t> truncated, shortened, misstated, misplaced;
   cv::Mat1w last;
   std::jthread camera;

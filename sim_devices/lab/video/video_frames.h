@@ -32,7 +32,7 @@ struct VideoCameraConfig {
   double frame_rate_hz = 50;      ///< frame rate at power-up; 0.1 ... 1000
   int nuc_freeze_frames = 0;      ///< frames for which the last picture is repeated after a correction
   int empty_first_frames = 0;     ///< first frames of the camera since power-up that are all zeros, including telemetry
-  int short_frame_interval = 0;   ///< interval between exposures sent with half their bytes and no mark; 0: none
+  int short_frame_interval = 0;   ///< every n-th exposure is sent with half its bytes and without a mark; 0: none
 };
 
 /// Returns whether this exposure since power-up is sent with half its bytes.
@@ -54,7 +54,7 @@ struct UsbIdentity {
 /// Returns vendor and product of a kind of camera.
 [[nodiscard]] UsbIdentity usb_identity(VideoCameraKind kind);
 
-/// Format on the wire with its offered sizes; the size for measurements is the last.
+/// Pixel format on the wire and the offered frame sizes; the last size is the size for measurements.
 struct VideoWireFormat {
   PixelFormat pixels = PixelFormat::mono16;
   std::vector<cv::Size> sizes;
@@ -66,8 +66,8 @@ struct VideoWireFormat {
 
 /// State of the camera that it reports with a picture.
 struct VideoCameraState {
-  std::uint64_t exposure = 0;  ///< number of the exposure since power-up
-  bool correcting = false;
+  std::uint64_t exposure = 0;         ///< number of the exposure since power-up
+  bool correcting = false;            ///< whether a non-uniformity correction is in progress
   std::uint64_t last_correction = 0;  ///< exposure of the last correction; 0: none
 };
 
