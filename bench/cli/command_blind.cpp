@@ -63,9 +63,10 @@ std::vector<BlindAnswer> model_answers(const std::vector<BlindPatch>& patches) {
 
 int run_blind(Console& console, const BlindArguments& a, const Program& program) {
   if (!a.simulated_person) {
-    return report_error(console, {ErrorCode::invalid_input,
-                                  "a person answers in the window: page Human observer, question 'Several sources, "
-                                  "blind'. Here --simulated-person answers as the model observer does"});
+    return report_error(
+        console, {ErrorCode::invalid_input,
+                  "people answer in the window, on the page Human observer, question 'Several sources, blind'. On the "
+                  "command line, add --simulated-person: the model observer then answers in place of a person"});
   }
   std::vector<EnhancementPackage> packages;
   for (const std::string& file : a.packages) {

@@ -137,8 +137,8 @@ std::vector<DecidedEffects> effects_of(const LoadedPlan& loaded, const ComparedM
     const SensorSpec& sensor = model.kind == ModelKind::sensor ? model.sensor : loaded.sensor();
     const SimulationPlan& simulation = loaded.plan().simulation;
     return DecidedEffects{model.name, full_plan(sensor, simulation.skip, simulation.force, simulation.motion),
-                          "every effect that is not neutral is simulated in both models, so that their difference is "
-                          "that of the descriptions alone"};
+                          "every effect that is not neutral is simulated in both models, so that the difference "
+                          "between the models comes from their descriptions alone"};
   };
   return {of(a), of(b)};
 }

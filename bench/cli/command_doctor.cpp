@@ -46,8 +46,8 @@ DoctorCheck check_viewing(const ViewingProposal& viewing, const ViewedDisplay& d
           .finding = viewing.stated_cost_percent > 2 * viewing_cost_percent ? Finding::warning : Finding::ok,
           .found = in_words(viewing, display),
           .explanation =
-              "The picture is so small at the eye that it costs acuity of the camera: enlarge it or come "
-              "closer.",
+              "The picture appears so small to the eye that the acuity is lower than that of the camera: enlarge the "
+              "picture or reduce the viewing distance.",
           .command = {}};
 }
 
@@ -70,7 +70,7 @@ DoctorCheck check_camera_library(const CameraLibrary& library) {
   if (library.faults.empty()) return check;
   check.finding = Finding::warning;
   check.found += fmt::format(", {} known faults", library.faults.size());
-  check.explanation = "Aravis mended these faults in later versions:";
+  check.explanation = "Later versions of Aravis correct these faults:";
   for (const auto& fault : library.faults) check.explanation += " " + fault + ".";
   return check;
 }

@@ -273,7 +273,7 @@ void add_dynamic_command(CLI::App& app, Program& program) {
                       "package of stages behind the camera, a file; the lag of the stages is not removed");
   command
       ->add_option("--tolerance-percent", a->tolerance_percent,
-                   "leaves out effects that change the acuity by at most this together, in percent, at rest and at the "
+                   "leaves out effects that together change the acuity by at most this percentage, at rest and at the "
                    "highest speed; default: none")
       ->check(number_in(0.01, 50));
   a->decisions.add_to(*command);

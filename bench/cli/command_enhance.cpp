@@ -276,10 +276,9 @@ void add_enhance_command(CLI::App& app, Program& program) {
   command->add_option("--packages", a->packages, "files of the packages")->required()->expected(1, 16);
   command->add_option("--out", a->out, "folder for the page, the numbers and the pictures")->capture_default_str();
   command
-      ->add_option(
-          "--dither", a->dither,
-          "number of subpixel positions per axis that the simulated sensor, or with --live the stage, visits in "
-          "turn, one frame at each: n gives n x n")
+      ->add_option("--dither", a->dither,
+                   "number n of subpixel positions per axis: the simulated sensor (with --live, the stage) visits n x "
+                   "n positions in turn, one frame at each")
       ->capture_default_str()
       ->check(whole_number(1, 4));
   command->add_flag(

@@ -135,8 +135,7 @@ int run_add(Console& console, const HistoryArguments& a) {
   const int added = number[Adding::added], known = number[Adding::known], moved = number[Adding::moved],
             again = number[Adding::judged_again];
   if (again > 0) {
-    console.note("sessions judged again, not added because their frames are those of other sessions: " +
-                 std::to_string(again));
+    console.note("sessions not added, because they judge the frames of other sessions again: " + std::to_string(again));
   }
   if (console.json()) {
     console.object({{"index", a.index},

@@ -217,7 +217,8 @@ void print_identification(Console& console, const IdentificationStudyTask& task,
   for (const auto& point : study.points) {
     if (point.judged)
       console.text(
-          fmt::format("behind the package at {:g} m: contrast times {:.3g}, noise of a sample {:.3g} K in units of it",
+          fmt::format("after the package at {:g} m: contrast multiplied by {:.3g}, noise of a sample {:.3g} K after "
+                      "division by this factor",
                       point.range_m, point.judged->gain, point.judged->noise_k));
   }
   if (task.motion.moving())

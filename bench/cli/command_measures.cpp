@@ -200,10 +200,10 @@ void print_sfr(Console& console, const SlantedEdge& edge, const SfrArguments& ar
   console.table(header, rows);
   console.text("");
   console.text("MTF 0.5 at " + fixed(edge.mtf50_per_pitch, 4) + " cycles per pitch");
-  console.text("The MTF is relative to a source of the size of the picture: it is without halos wider than " +
+  console.text("The MTF is relative to a source of the size of the picture and excludes halos wider than " +
                fixed(edge.widest_halo_pitch, 1) + " pitches, which are at most " + fixed(100 * edge.wide_halo_most, 1) +
-               " % of the step. The first interval is relative to a source of any size, the second to one of the size "
-               "of the picture.");
+               " % of the step. The first interval is relative to a source of any size, the second to a source of the "
+               "size of the picture.");
 }
 
 /// Whether values reach the end of the range of the file's type, so that they may be clipped.

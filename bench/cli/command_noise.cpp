@@ -304,7 +304,7 @@ void print_acuities(Console& console, const std::vector<NoiseAcuity>& points) {
                  "acuity single frame / successive"},
                 rows);
   console.text("");
-  console.text("r^2: variance of the template differences over that with white noise, and its parts");
+  console.text("r^2: variance of the template differences divided by their variance with white noise, and its parts");
   console.table({"dT / noise", "r", "pixels", "rows", "columns", "correlated"}, why);
 }
 

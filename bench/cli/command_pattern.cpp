@@ -59,7 +59,7 @@ Result<void> may_be_written(const std::string& truth_file, const std::string& ou
   const std::string_view title = std::string_view(truth).substr(0, truth.find(':') + 1);
   if (there && there->starts_with(title)) return {};
   return fail(ErrorCode::invalid_input, "--out " + out + ": the true values would overwrite " + truth_file +
-                                            ", which is not such a file; choose another name");
+                                            ", which is not a file of true values; choose another name");
 }
 
 int run_pattern(Console& console, const PatternArguments& a, std::uint64_t seed) {

@@ -252,8 +252,8 @@ void add_plan_command(CLI::App& app, Program& program) {
   command->add_flag("--why", a->why,
                     "state the reason for every effect, also for those that are neutral in the sensor");
   command->add_flag("--decide", a->decide,
-                    "state, for each limit on an acuity, bench time against the probability of each decision, and the "
-                    "smallest half-width that matters beside the budget");
+                    "state, for each limit on an acuity, the bench time and the probability of each decision, and the "
+                    "smallest half-width of the trials that matters beside the uncertainty budget");
   auto* optimise =
       command->add_flag("--optimise", a->optimise,
                         "search the design of least bench time: mountings of each plate, phases, frames of "

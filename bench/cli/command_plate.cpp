@@ -75,7 +75,7 @@ void print_errors(Console& console, const TargetPlate& plate, const PlateArgumen
                  fmt::format("corners of radius {:g} mm [%]", a.errors.corner_radius_mm),
                  fmt::format("sheet of {:g} mm at {:g} m [%]", a.errors.thickness_mm, a.errors.distance_m)},
                 rows);
-  console.text("An error of all sizes by 1 % changes the acuity by 1 %.");
+  console.text("An error of 1 % in all sizes changes the acuity by 1 %.");
 }
 
 int run_plate(Console& console, const PlateArguments& a) {

@@ -187,8 +187,8 @@ Result<TurbulentAnswers> through_turbulence(const RangeOptions& options, const R
     tod.prediction.notes = std::move(notes);
     if (still_has_spread)
       tod.prediction.notes.emplace_back(
-          "no spread of the range over the open parameters of the observer: the effect of the turbulence is that on "
-          "the observer itself");
+          "no spread of the range over the open parameters of the observer: the effect of the turbulence is computed "
+          "only for the nominal parameters");
     if (tod.twin_r75_m) {
       const auto twin = turbulent_prediction(behind, thresholds_of(*session->twin, task.delta_t_k).thresholds, task);
       tod.twin_r75_m = twin ? twin->r75_m : std::nullopt;

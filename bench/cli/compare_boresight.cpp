@@ -26,9 +26,9 @@ bool same_triangles(const Session& a, const Session& b) {
 std::vector<std::string> assumptions(const Boresight& found, bool collimated) {
   std::vector<std::string> sentences{"assumed: the plate did not move between the sessions"};
   if (!collimated) {
-    sentences.push_back(
-        fmt::format("assumed: the entrance pupil did not move sideways; 1 mm would be {:.3g} mrad of this shift",
-                    found.sideways_mrad_per_mm));
+    sentences.push_back(fmt::format(
+        "assumed: the entrance pupil did not move sideways; a movement of 1 mm would cause {:.3g} mrad of this shift",
+        found.sideways_mrad_per_mm));
   }
   return sentences;
 }

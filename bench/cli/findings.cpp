@@ -34,9 +34,8 @@ void print_frontier(const Console& console, const std::vector<PrecisionChoice>& 
   header.emplace_back("");
   console.text("");
   console.text(
-      "precision of S75 by frames and kind of answers; the half-width is the largest of all contrasts, and that which "
-      "19 in "
-      "20 runs do not exceed:");
+      "precision of S75 by number of frames and kind of answers; half-width: the largest of all contrasts, not "
+      "exceeded in 19 of 20 runs:");
   console.table(header, rows);
 }
 

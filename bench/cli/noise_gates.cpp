@@ -69,10 +69,11 @@ std::optional<NoiseFault> noise_fault(const NoiseLimits& limits, double noise) {
                                 ", and the noise is below half a step: the steps are too coarse to measure it"};
   }
   if (limits.clipped_share > most_clipped) {
-    return NoiseFault{"saturated",
-                      fixed(100 * limits.clipped_share, 1) +
-                          " % of the pixels have the highest or the lowest value of the recording, more than the value "
-                          "next to it has: their noise is clipped below full scale, so no noise is reported"};
+    return NoiseFault{
+        "saturated",
+        fixed(100 * limits.clipped_share, 1) +
+            " % of the pixels have the highest or the lowest value of the recording, and significantly fewer have the "
+            "neighbouring value: their noise is clipped below full scale, so no noise is reported"};
   }
   return std::nullopt;
 }

@@ -76,8 +76,8 @@ void print_designs(const Console& console, const DecisionForecast& forecast) {
     rows.push_back(std::move(row));
   }
   console.text(
-      "expected half-widths at 95 % and probability of a decision, for cameras this far above the limit (19 in 20 runs "
-      "have at most the half-width of the table above, which is larger):");
+      "expected 95 % half-widths, and probability of a decision by distance of the camera from the limit (the table "
+      "above has larger half-widths, which 19 of 20 runs do not exceed):");
   console.table(header, rows);
 }
 
