@@ -37,7 +37,7 @@ PlanSection measures_section() {
           {.name = "pixel_rule",
            .type = ChoiceKey{names_of(all_pixel_rules)},
            .sentence = "Rule of bad pixels: the three keys below (own), or a response below half and a noise above "
-                       "twice the mean, by GB/T 17444-2013 as known from abstracts (gbt-17444)",
+                       "twice the median, by GB/T 17444-2013 as known from abstracts (gbt-17444)",
            .place = of(&MeasuresPlan::pixel_rule),
            .written_at_default = false},
           {.name = "pixels_response",
