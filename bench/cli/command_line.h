@@ -26,7 +26,7 @@ struct CommandExample {
 /// Adds the examples to the help of every command.
 void add_examples(CLI::App& app);
 
-/// Returns a page for the program, then one for each visible command.
+/// Returns a page for the program, then one page for each visible command. `date`: date of the release, "2026-11-22".
 [[nodiscard]] std::vector<ManualPage> manual_pages(const CLI::App& app, const std::string& version,
                                                    const std::string& date);
 
@@ -37,7 +37,7 @@ struct Completion {
 };
 
 /// Returns the candidates for the last of `words`, which start after the name of the program. `cameras` is called only
-/// if a camera is expected, because it searches every interface.
+/// if a camera is expected, because the call searches every interface.
 [[nodiscard]] Completion completion(const CLI::App& app, const std::vector<std::string>& words,
                                     const std::function<std::vector<std::string>()>& cameras);
 

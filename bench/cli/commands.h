@@ -30,9 +30,9 @@ struct Program {
 /// Adds --json, --quiet and --seed, and sets `action` to run when the subcommand is chosen.
 void finish_command(CLI::App& command, Program& program, std::function<int(Console&)> action);
 
-/// Validators of option values. Unlike the validators of the parser, they reject NaN and quote the value. If the value
-/// would be valid in a different unit, the message names that unit. `unit`: unit of the option as in the suffix of its
-/// name.
+/// Return validators of option values from `low` to `high`, both included. Unlike the validators of the parser, these
+/// validators reject NaN and quote the value. If the value would be valid in a different unit, the message names that
+/// unit. `unit`: unit of the option, as in the suffix of its name.
 [[nodiscard]] CLI::Validator number_in(double low, double high, std::string_view unit = {});
 [[nodiscard]] CLI::Validator whole_number(std::int64_t low, std::int64_t high);
 

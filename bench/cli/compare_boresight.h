@@ -17,7 +17,7 @@ struct NamedSession {
   const Session& session;
 };
 
-/// Prints the result of boresight() for both sessions, and its assumptions. Returns the exit code.
+/// Prints boresight() of both sessions and its assumptions. `accepted_files`: accepted changes. Returns the exit code.
 [[nodiscard]] int show_boresight(Console& console, const std::array<NamedSession, 2>& sessions, const Opening& opening,
                                  const std::vector<std::string>& accepted_files);
 

@@ -82,7 +82,7 @@ class Console {
 /// the descriptor is a terminal.
 [[nodiscard]] std::string broken_for(int descriptor, std::string_view text);
 
-/// Flushes standard output. Errors: `io` if it is full or closed.
+/// Flushes standard output. Errors: `io` if the output is full or closed.
 [[nodiscard]] Result<void> finish_output();
 
 /// Returns "0.480"; "–" for a missing number; "1.2e-08" if all decimals would be zero.

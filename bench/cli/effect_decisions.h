@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Simulated effects of a command, as a table and as JSON. Effects that the planner decided come first; neutral effects
-// follow in one line.
+// Simulated effects of a command, as a table and as JSON. Effects that the planner decided come first. Neutral effects
+// follow in one line; a neutral effect changes nothing in this sensor and is therefore skipped.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -34,8 +34,8 @@ struct DecidedEffects {
   std::string promise;
 };
 
-/// Returns the sentence with the reason why every effect that is not neutral is simulated: the criteria of the planner
-/// are valid for triangles, not for this scene. `scene`: "the threshold of bars", "the identification of targets".
+/// Returns a sentence that every effect is simulated unless it is neutral, because the criteria of the planner hold for
+/// triangles and not for this scene. `scene`: "the threshold of bars", "the identification of targets".
 [[nodiscard]] std::string no_criterion_for(const std::string& scene);
 
 /// Prints the table of decisions: effects that are neutral in the sensor in one line, or with their reasons.

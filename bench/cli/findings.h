@@ -12,15 +12,15 @@
 
 namespace todbench {
 
-/// Prints one line for each finding: whether it makes the number unfit for a decision, then `about`, then the sentence
-/// of the finding.
+/// Prints one line for each finding: "not fit for a decision: " or "finding: ", then `about` (the result to which the
+/// finding applies), then the sentence of the finding.
 void print_findings(const Console& console, const std::optional<Adequacy>& adequacy, std::string_view about);
 
-/// Prints a table of measuring time and half-width of S75 for each number of frames, and marks the recommended number.
+/// Prints a table of measuring time and half-width of S75 for each choice. Marks the planned and recommended choices.
 void print_frontier(const Console& console, const std::vector<PrecisionChoice>& choices);
 
 /// Prints a table of the paired ratios (tod/comparison/paired_ratio.h), and a sentence about errors that do not cancel
-/// in these ratios. No output without paired ratios. `measured_once`: has_contrast_measured_once() of a camera.
+/// in these ratios. No output without paired ratios. `measured_once`: has_contrast_measured_once() of a camera's curve.
 void print_paired(const Console& console, const Comparison& comparison, bool measured_once);
 
 }  // namespace todbench

@@ -16,7 +16,7 @@ namespace todbench {
 /// Options for people. They must outlive the parser.
 struct PeopleOptions {
   std::string folder,  ///< new folder for pictures in random order, with the truth in a separate folder; empty: none
-      m75_out;         ///< file for the M75 of the people, as input of `todbench range --m75-of`; empty: none
+      m75_out;         ///< file for the M75 of the people (RangeTask::m75), for `todbench range --m75-of`; empty: none
   /// Paths of answers.csv files, one per person. The pictures must have been written with the same options and seed.
   std::vector<std::string> answers;
   /// Number of pictures of each target at each range for one person.

@@ -11,7 +11,7 @@
 
 namespace todbench {
 
-/// Arguments of both options.
+/// Arguments of --bars and --answers.
 struct BarsArguments {
   std::string session,  ///< folder of the session
       out,              ///< new folder for the pictures
@@ -26,7 +26,7 @@ struct BarsArguments {
   Opening opening{};
 };
 
-/// Adds --bars, --answers and the options of both. `arguments` must outlive the parser.
+/// Adds --bars, --answers and their further options. `arguments` must outlive the parser.
 void add_bars_options(CLI::App& command, BarsArguments& arguments);
 /// Writes the pictures, or adds the answers to the session and rewrites its report. Returns the exit code.
 [[nodiscard]] int run_judge_bars(Console& console, const BarsArguments& arguments);

@@ -18,8 +18,8 @@ namespace todbench {
 [[nodiscard]] cv::Mat1b saturated_pixels(const Frame& frame);
 
 /// Counts the pixels with the lowest and with the highest value of a recording, the extreme values. In a flat scene
-/// with noise, fewer pixels have an extreme value than have the value next to it. If a device clips below full scale,
-/// many pixels have an extreme value.
+/// with noise, an extreme value has fewer pixels than the adjacent value. If a device clips below full scale, an
+/// extreme value has many pixels.
 class EndValues {
  public:
   /// Adds a picture. `usable`: pixels that are not 0 are counted; empty: all pixels.
@@ -52,7 +52,7 @@ struct NoiseFault {
 };
 /// Returns the reason why a noise cannot be stated. The reasons are too many saturated pixels, pixels that are clipped
 /// below full scale, and noise below half a step of the counts. Rounding makes this small noise depend on the position
-/// of the level between two steps. Empty if there is none.
+/// of the level between two steps. Empty: the noise can be stated. `noise`: in the unit of NoiseLimits::unit_per_count.
 [[nodiscard]] std::optional<NoiseFault> noise_fault(const NoiseLimits& limits, double noise);
 /// Returns a phrase with the number of frames that repeat the previous frame bit for bit; empty if no frame does.
 [[nodiscard]] std::string frozen_sentence(int repeated);

@@ -38,15 +38,15 @@ struct RangeOptions {
   double emissivity = 1;
   /// Contrast of the target in K, as stated on the command line.
   double asked_delta_t_k = 0;
-  /// Source of M75 and V50.
+  /// Source of the criteria M75 (RangeTask::m75) and V50 (value of the TTP metric for a probability of 50 %).
   CriterionSource criterion_source = CriterionSource::published;
   /// Observer of the TOD curve of the session; empty: no session.
   std::string curve_observer{};
-  /// Phrase for the result that describes the M75 of --m75-of. It names the observers who identified the targets, the
+  /// Phrase for the result that describes the M75 of --m75-of and names the observers who identified the targets, the
   /// set of targets, and the observer of the TOD curve.
   std::string m75_observer{};
-  double n50 = 6,                ///< cycles on the target for 50 % in ACQUIRE
-      mtdp_n50 = 6,              ///< cycles on the target for 50 % in the MTDP-like model
+  double n50 = 6,                ///< cycles on the target for a probability of 50 % in ACQUIRE
+      mtdp_n50 = 6,              ///< cycles on the target for a probability of 50 % in the MTDP-like model
       extinction_u_percent = 0,  ///< relative standard uncertainty of the extinction; widens the intervals
       curve_u_percent = 0;  ///< relative standard uncertainty of MRTD, MTDP-like and CTF thresholds; widens intervals
   /// Relative standard uncertainty of M75 in percent, which widens the interval of the TOD model.
@@ -66,10 +66,10 @@ struct RangeOptions {
   /// Returns whether the air path is a tabulated atmosphere and not a single extinction coefficient.
   [[nodiscard]] bool has_table() const;
   /// Returns the sensor that --sensor names. Without this option, returns the sensor of the session, with the microscan
-  /// of the session's plan; empty if there is no session.
+  /// of the session's plan; empty if there is no session. Errors: those of load_sensor().
   [[nodiscard]] Result<std::optional<SensorSpec>> sensor_of(const std::optional<Session>& session) const;
   /// Returns the air path that --atmosphere and --haze select. Without --band, the band of the sensor applies.
-  /// `extinction_per_km` is the extinction coefficient of the atmosphere "beer-lambert", the default.
+  /// `extinction_per_km`: coefficient of the default atmosphere "beer-lambert". Errors: band_of(), load_atmosphere().
   [[nodiscard]] Result<Atmosphere> air(const std::optional<SensorSpec>& sensor, double extinction_per_km) const;
   /// Converts the radiances of target and background to a contrast in kelvin on the NETD scale. Returns `delta_t_k`
   /// unchanged if no background is given.
@@ -81,7 +81,7 @@ struct RangeOptions {
   [[nodiscard]] Result<RangeSources> sources(std::vector<TodThreshold> thresholds,
                                              const std::optional<SensorSpec>& sensor) const;
   /// Writes the figure of --svg and the page of --page, if requested. `said`: sentences about the results, which are
-  /// printed on the page.
+  /// printed on the page. Errors: those of the figure; `io`.
   [[nodiscard]] Result<void> write(const std::vector<ModelRange>& models, const RangeQuestion& question,
                                    const std::vector<std::string>& said, const Json& grids) const;
 
@@ -89,7 +89,7 @@ struct RangeOptions {
   [[nodiscard]] Result<Json> grid_json(const RangeSources& sources, const RangeQuestion& question,
                                        const std::optional<SensorSpec>& sensor) const;
 
-  /// Returns the band of the options; if absent, the band of the sensor.
+  /// Returns the band of the options; if absent, the band of the sensor. Errors: `invalid_input` for an invalid band.
   [[nodiscard]] Result<SpectralBand> band_of(const std::optional<SensorSpec>& sensor) const;
   /// Returns the radiative scene. Precondition: a background is given.
   [[nodiscard]] RadiativeScene scene(double delta_t_k, const Atmosphere& air) const;

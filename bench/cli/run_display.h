@@ -24,7 +24,7 @@ class RunDisplay {
 
   /// Returns the listener of the run.
   [[nodiscard]] ExperimentListener listener();
-  /// Returns the latest fitted curve; null if it has no viewer.
+  /// Returns the latest fitted curve; null if the curve has no viewer.
   [[nodiscard]] const LiveCurve* curve() const { return curve_ ? &*curve_ : nullptr; }
 
  private:

@@ -49,8 +49,8 @@ struct ExperimentHost {
   CameraPatience camera_patience{};
   HostClocks clocks = host_clocks();
   AddedStages added{};
-  /// Changes or refuses the opened devices before the run, and returns a note about this for the session. Empty: the
-  /// devices are used as opened.
+  /// Changes or refuses the opened devices before the run, and returns a note about the change for the session. Empty:
+  /// the devices are used as opened.
   std::function<Result<std::string>(OpenedBench& bench)> on_opened{};
 };
 

@@ -72,7 +72,7 @@ class ReconnectingSource final : public FrameSource {
   std::uint64_t next_sequence_ = 0;
 };
 
-/// Writes all settings again and compares the camera with its former state. Succeeds if both are the same. Errors:
+/// Writes all settings again and compares the camera with its former state. Succeeds if there is no difference. Errors:
 /// `disconnected`; `not_found` with the differences. Temperatures that the camera measures may differ.
 [[nodiscard]] Result<void> restore_settings(FrameSource& source, const std::map<std::string, std::string>& settings,
                                             const SourceInfo& before);

@@ -14,7 +14,7 @@
 
 namespace todbench {
 
-/// Levels of the frames of the last `window_s`, and the drift computed from these levels.
+/// Levels (K) of the frames of the last `window_s` seconds, and the drift computed from these levels.
 class DriftWindow {
  public:
   explicit DriftWindow(double window_s) : window_s_(window_s) {}
@@ -34,8 +34,8 @@ class DriftWindow {
   std::deque<LevelAt> points_;
 };
 
-/// Starts the source, reads frames until the conditions are met, and stops the source. Returns a sentence about the
-/// warm-up; empty without conditions. Errors: `calibration` (the camera still drifts at the end of the time limit),
+/// Starts the source, reads frames until the conditions of `plan` are met, and stops the source. Returns a sentence on
+/// the warm-up; empty without conditions. Errors: `calibration` (the camera still drifts at the end of the time limit),
 /// those of FrameTaker::next().
 [[nodiscard]] Result<std::string> wait_for_warm_up(FrameSource& source, const WarmUpPlan& plan,
                                                    const FrameTakerOptions& taking, const std::stop_token& stop);

@@ -49,7 +49,7 @@ struct BarsQuestion {
 
 /// Writes the pictures of all decisions to a new folder (0001.png ...), answers.csv with an empty answer for each, and
 /// bars.json with the request. The folder does not reveal the side of the target. Errors: `invalid_input` (folder
-/// exists; as bars_questions()), `io`.
+/// exists; as bars_questions()), `io`. Returns the number of decisions.
 [[nodiscard]] Result<std::size_t> write_bars_questions(const std::filesystem::path& folder,
                                                        const std::filesystem::path& session, const KeptBars& kept,
                                                        const BarsRequest& request);

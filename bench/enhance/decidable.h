@@ -25,14 +25,14 @@ void withhold_undecided(std::vector<PairedRatio>& ratios, const PackageResult& w
 [[nodiscard]] std::optional<double> identified_acuity_per_mrad(const TodPoint& point);
 /// Gain and noise of a judged point, averaged over its set-ups. Requires stages after the camera.
 struct JudgedPoint {
-  double gain = 0;        ///< contrast after the stages divided by the contrast before them
-  double gain_error = 0;  ///< standard error
+  double gain = 0;        ///< contrast after the stages divided by the contrast before the stages
+  double gain_error = 0;  ///< standard error of the gain
   double noise_k = 0;     ///< noise that is passed to the observer, referred to the contrast before the stages
 };
 /// Returns gain and noise at a contrast; empty without stages after the camera.
 [[nodiscard]] std::optional<JudgedPoint> judged_point(const PackageResult& result, double set_delta_t_k);
-/// Returns a sentence if the gains at two contrasts differ by more than 5 % and more than four standard errors. The
-/// stages are then not linear: large and small triangles have different gains. Empty: no difference.
+/// Returns a sentence if the gains at two contrasts differ by more than 5 % and by more than four standard errors. The
+/// stages are then not linear: large and small triangles have different gains. Empty: the gains do not differ.
 [[nodiscard]] std::string why_not_linear(const PackageResult& result);
 
 }  // namespace todbench

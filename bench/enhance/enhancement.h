@@ -82,7 +82,7 @@ struct EnhancementOptions {
 [[nodiscard]] Result<LoadedPlan> recorded_plan(const std::filesystem::path& session, const Opening& opening);
 /// Compares the packages with the recorded frames of a session whose plan is `loaded`. The answers without a package
 /// equal the answers of the session. After a change, the comparison can discard only frames that the run discarded. A
-/// warning names packages that store more frames. Errors: those of compare_packages() and open_recorded_bench().
+/// warning names packages with a longer memory. Errors: those of compare_packages() and open_recorded_bench().
 [[nodiscard]] Result<Enhancement> compare_packages_recorded(const std::filesystem::path& session,
                                                             const LoadedPlan& loaded,
                                                             const std::vector<EnhancementPackage>& packages,

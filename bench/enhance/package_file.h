@@ -54,8 +54,8 @@ struct EnhancementPackage {
 /// Errors: `invalid_input` "FILE:LINE: ...".
 [[nodiscard]] Result<EnhancementPackage> read_package(const std::filesystem::path& file);
 
-/// Fails with `invalid_input` for a package with super-resolution. `what`: user of the package. This user requires
-/// pictures with one sample per pixel of the camera.
+/// Fails with `invalid_input` for a package with super-resolution. `what`: for the message, the user of the package,
+/// which requires pictures with one sample per pixel of the camera.
 [[nodiscard]] Result<void> refuse_finer_pictures(const EnhancementPackage& package, std::string_view what);
 
 /// Returns the largest distance, in samples, over which a picture influences a sample after the stages; empty if the

@@ -21,7 +21,7 @@ struct StageScan {
 
 /// Replaces camera and target of the bench: before frame k the stage moves the plate by dither_px(steps, k) from the
 /// requested position, as super_resolution_stage() assumes with FrameShifts::scan. Frames taken while the target
-/// changes are counted in k, but the plate is not moved for them. Sequence numbers continue without the dropped frames,
+/// changes are counted in k, but the plate does not move then. Sequence numbers continue without the dropped frames,
 /// so that lost frames remain detectable. ScanWatch uses the frames to check whether the plate really moves. Call
 /// before the bench is recorded. Returns a note about the scan for the session. Errors: `invalid_input` if the target
 /// does not set shifts, or the pixel has no size. A move that fails ends the run with `integrity`, or `interrupted`.
@@ -35,7 +35,7 @@ struct StageScan {
 /// super-resolution would then combine frames at wrong positions.
 [[nodiscard]] Result<void> check_scans(const std::vector<EnhancementPackage>& packages, int dither);
 
-/// Returns ExperimentHost::on_opened for a stage that scans steps x steps positions within a pixel. This function calls
+/// Returns ExperimentHost::on_opened for a stage that scans steps x steps positions within a pixel. The result calls
 /// scan_with_stage(). Errors: `invalid_input` for an observer that cannot judge the frames of a scan.
 [[nodiscard]] Result<std::function<Result<std::string>(OpenedBench&)>> scan_on_opened(const LoadedPlan& loaded,
                                                                                       int steps);

@@ -25,12 +25,12 @@ struct PairedAnswers {
 /// Required number of differing answers. With fewer, the upper limit of the jackknife interval is too low.
 inline constexpr std::size_t enough_differing = 10;
 
-/// Returns the amount by which |ln ratio| of the thresholds may exceed its estimate (95 %), given the number of
-/// differing answers. A shift D of ln S75 changes the proportion of correct answers at each size by D psi'(ln size). At
-/// least the share D mean(psi') of the answers then differs, with the mean over the answers. If k of n answers differ,
-/// the true share is at most q (Clopper and Pearson 1934; q = 1 - 0.025^(1/n) for k = 0). The estimate corresponds to
-/// the share k / n, so the result is (q - k / n) / mean(psi'). Answers count as independent. `fit`: fit to the run
-/// without the package, of form `form`. Empty: no slope, no size near the threshold, or a bound above 3.
+/// Returns the amount by which |ln ratio| of the thresholds may exceed its estimate (95 %). psi is the psychometric
+/// function of the run without the package: `fit`, of form `form`. A shift D of ln S75 changes the share of correct
+/// answers at each size by D psi'(ln size). At least the share D mean(psi') of the answers then differs, with the mean
+/// over the answers. If k of n answers differ, the true share is at most q (Clopper and Pearson 1934; q = 1 -
+/// 0.025^(1/n) for k = 0). The estimate corresponds to the share k / n, so the result is (q - k / n) / mean(psi').
+/// Answers count as independent. Empty: no slope, no size near the threshold, all answers differ, or a bound above 3.
 [[nodiscard]] std::optional<double> unseen_ln_ratio(const PairedAnswers& answers, std::span<const Trial> without,
                                                     double set_delta_t_k, const PsychometricFit& fit,
                                                     PsychometricForm form);

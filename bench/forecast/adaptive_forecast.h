@@ -17,8 +17,8 @@ struct AdaptiveForecast {
 /// Replaces the predictions of constant stimuli by those of an adaptive schedule (AdaptiveSchedule). `constant`: the
 /// predictions of constant stimuli. Precondition: the plan has a set-up.
 ///
-/// The schedule ends at the first presentation after which its own interval is narrow enough. This interval comes from
-/// few set-ups and scatters from run to run. The number of presentations therefore scatters too. The forecast simulates
+/// The schedule ends at the first presentation after which the interval of S75 is narrow enough. This interval comes
+/// from few set-ups and scatters from run to run, so the number of presentations scatters too. The forecast simulates
 /// 64 runs, with the same random numbers at each call. Each run goes through the visits of the schedule (VisitOrder).
 /// The standard error of the answers is the expected one times the scatter of its estimate: over set-ups, over
 /// presentations (graded answers of few set-ups), or `scatter_of_binary_error`. The error of the measured contrast

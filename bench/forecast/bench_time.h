@@ -62,13 +62,13 @@ struct BenchTime {
 /// after an interruption; empty for runs of less than ten minutes and for a simulated scene.
 [[nodiscard]] std::string resume_remark(const Plan& plan, double bench_s);
 
-/// Returns the contrasts in K that the presentations of a set-up have in the ramp of a plan. They are the response of a
-/// first-order black body to its set-points. A slow black body adds presentations at the end of the ramp down.
+/// Returns the contrasts in K of the presentations of a set-up in the ramp of a plan: the response of a first-order
+/// black body to its set-points. A slow black body adds presentations at the end of the ramp down.
 [[nodiscard]] std::vector<double> ramp_contrasts_k(const Plan& plan);
 
 /// Returns the presentations of a constant schedule for bench_time(). For an adaptive schedule, returns the
 /// presentations of its visits, because the schedule stays in a set-up for a whole visit. The result does not depend on
-/// the frames per presentation. The shifts only differ from each other (ConstantStimuliOptions::spread_evenly).
+/// the frames per presentation. The shifts are distinct, but not spread evenly (ConstantStimuliOptions::spread_evenly).
 [[nodiscard]] std::vector<TargetState> listed_presentations(const Plan& plan, const std::vector<TargetPlate>& plates);
 
 }  // namespace todbench

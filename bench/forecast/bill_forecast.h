@@ -10,7 +10,7 @@
 namespace todbench {
 
 /// Forecasts the bill of a measurement. The bill contains the times of target changes, location of the plate and
-/// contrasts, presentations of each contrast, and physical measures, as bench_time() counts them. It also contains the
+/// contrasts, presentations of each contrast, and physical measures, as bench_time() counts them. The bill also has the
 /// predicted half-widths, the rows of the budget that presentations do not reduce, the least time for the limits on
 /// acuity, and the effects left out. `total_s`: bench time of the run, without warm-up and computing. Empty for a
 /// simulated scene, which is as fast as the processor. Errors: those of predict_plan() and curve_uncertainty().

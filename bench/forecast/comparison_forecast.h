@@ -20,7 +20,7 @@ struct ComparisonForecast {
 
 /// Forecasts the comparison of camera and twin. If camera and twin are measured at common phases, the paired ratio
 /// decides, and the standard errors are those of this ratio. Otherwise the standard errors follow from the predicted
-/// uncertainty of the simulated design. In both cases they are scaled to the camera's own number of phases.
+/// uncertainty of the simulated design. All standard errors are scaled to the camera's own number of phases.
 [[nodiscard]] ComparisonForecast comparison_forecast(const Plan& plan, const PlanPrediction& prediction);
 
 /// Forecasts the comparison of two curves at the contrasts of `comparison`. The standard errors follow from the

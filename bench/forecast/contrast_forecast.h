@@ -55,7 +55,7 @@ void join_contrast_scatter(std::vector<ContrastPrediction>& contrasts, const Pla
     Plan plan, const ExperimentInputs& inputs, const std::function<bool(const ContrastPrediction&)>& enough);
 
 /// Returns the number of frames of the measured contrast that allows presentations to decide a limit, for a camera of
-/// the predicted acuity: the scatter of the contrast then causes at most half of the half-width that decides.
+/// the predicted acuity: the scatter of the contrast then causes at most half of the half-width that the rows leave.
 /// `floor_ln`: half-width of the stated rows. Empty in three cases: the number of the plan is sufficient, the stated
 /// rows alone prevent the decision, or 64 times the number of the plan is not enough. Errors: those of predict_plan().
 [[nodiscard]] Result<std::optional<int>> deciding_contrast_frames(const Plan& plan, const ExperimentInputs& inputs,

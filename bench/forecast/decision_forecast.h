@@ -70,7 +70,7 @@ struct DecisionDesign {
   double half_width_percent = 0;        ///< expected half-width of the trials at the contrast of the limit
   double deciding_percent = 0;          ///< expected half-width including the stated rows
   bool planned = false;                 ///< true for the plan itself
-  std::vector<CameraChance> cameras{};  ///< -10 to +10 % in steps of 1 %
+  std::vector<CameraChance> cameras{};  ///< cameras from 10 % below to 10 % above the limit, in steps of 1 %
   /// Probabilities for a unit of the fleet, if the plan states the fleet: accepted although it is below the limit
   /// (consumer), and not accepted although it is above the limit (producer).
   std::optional<double> consumer_risk{}, producer_risk{};
@@ -90,7 +90,7 @@ struct DecisionForecast {
   double expected_over_limit_percent = 0;
   double floor_percent = 0;                ///< half-width of all stated rows; 0: no budget
   double smallest_half_width_percent = 0;  ///< smallest_half_width_ln()
-  std::vector<FloorRow> rows{};            ///< largest first
+  std::vector<FloorRow> rows{};            ///< the stated rows, the largest half-width first
   /// Half-width due to the scatter of the measured contrast, as planned. More presentations do not reduce it.
   double contrast_percent = 0;
   /// Frames of the measured contrast from deciding_contrast_frames(); empty if the number of the plan need not change.
@@ -116,8 +116,8 @@ struct DecisionForecast {
 [[nodiscard]] Result<std::vector<double>> floors_ln(const Plan& plan, const PlanPrediction& prediction);
 
 /// Returns a text about the limits that cannot be decided because of the stated rows of the budget: even without
-/// scatter of the trials, a decision on them has a probability below `probability`. States the distance of the
-/// predicted acuity from each limit. Empty if there is no such limit.
+/// scatter of the trials, the probability of a decision on the limit is below `probability`. States the distance of the
+/// predicted acuity from each of these limits. Empty: all limits can be decided.
 [[nodiscard]] std::string open_by_budget(const Plan& plan, const std::vector<ContrastPrediction>& contrasts,
                                          const CurveUncertainty* budget, double probability);
 

@@ -28,20 +28,20 @@ struct GradedDesignFigures {
 /// sensor averaged over frames, the noise of the observer averaged over draws, and set-up terms of phases, contrast and
 /// registration:
 ///
-///   (f - g) / F + (1 - f) / (F D) + r + g n s,   f = (3/4)^2 (Phi2(z, z; share) - (2/3)^2) / (p (1 - p)),
-///   p = 3/4 = 1/4 + 3/4 Phi(z)
+///   (f - g) / F + (1 - f) / (F D) + r + g max(1, n s),
+///   f = (3/4)^2 (Phi2(z, z; share) - (2/3)^2) / (p (1 - p)),   p = 3/4 = 1/4 + 3/4 Phi(z)
 ///
 /// F is the number of frames per presentation, D the number of draws per frame, and n the number of phases of a
 /// triangle of size S (in pitches).
 ///
-/// f is the share of the sensor's noise in an answer at the threshold. The answer is correct by chance in a quarter of
-/// the cases; otherwise a Gaussian decision variable determines the answer. Phi2 is the probability that this variable
-/// makes two answers to the same frame correct.
+/// f is the share of the sensor's noise in an answer at the threshold (share = sensor_share). The answer is correct by
+/// chance in a quarter of the cases; otherwise a Gaussian decision variable (distribution Phi) determines the answer.
+/// Phi2 is the probability that this variable makes two answers to the same frame correct.
 ///
-/// g is the share of the fixed pattern, which averaging over frames does not reduce. The phases average the pattern
-/// only if they move the triangle across its detectors: s = 1.5 exp(-(1.9 / S)^2). The factor 1.5 applies to set-ups
-/// that place triangles on the same detectors (both numbers from 78 runs of `graded_coverage_study` with a pattern of
-/// 0.1 K).
+/// g is f with share = pattern_share: the fixed pattern, which averaging over frames does not reduce. The phases reduce
+/// the pattern only if they move the triangle across its detectors: s = 1.5 exp(-(1.9 / S)^2). The factor 1.5 applies
+/// to set-ups that place triangles on the same detectors (both numbers from 78 runs of `graded_coverage_study` with a
+/// pattern of 0.1 K).
 ///
 /// r is 0.048 divided by the number of phases, at most 0.15, if the mountings cancel the phases (five set-ups or more;
 /// 138 runs with 12 phases and 11 runs with 3 phases of `graded_coverage_study`). With fewer set-ups the phases do not
@@ -56,7 +56,7 @@ struct GradedDesignFigures {
 [[nodiscard]] double graded_variance_ratio(const GradedDesignFigures& design);
 
 /// Returns the factor by which a fixed pattern and noise correlated in time increase the variance of binary answers:
-/// 1 + g (n s - 1), plus the covariances of successive presentations.
+/// 1 + g (max(1, n s) - 1), plus the covariances of successive presentations (symbols of graded_variance_ratio()).
 [[nodiscard]] double pattern_inflation(const GradedDesignFigures& design);
 
 /// Returns the variance of the ln ratio of camera and twin if both are measured at common phases, divided by the

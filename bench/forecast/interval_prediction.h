@@ -11,12 +11,12 @@
 
 namespace todbench {
 
-/// What the answers at one contrast are expected to tell.
+/// Expected information of the answers at one contrast about S75.
 struct AnswerForecast {
   ContrastOutlook outlook;
-  std::vector<double> information;  ///< of a presentation of each set-up, plate by plate, in any unit
+  std::vector<double> information;  ///< information of a presentation in each set-up, plate by plate, in any unit
   GradedDesignFigures all{};        ///< graded_design()
-  double binary_se = 0;             ///< standard error of ln S75 of binary answers of that design
+  double binary_se = 0;             ///< standard error of ln S75 from binary answers to the design `all`
 };
 
 /// Returns the information of a presentation of each set-up at a contrast, plate by plate, in any unit.

@@ -23,7 +23,7 @@ struct LimitOutlook {
   double passes_95_from_per_mrad = 0;  ///< a camera with at least this acuity passes with a probability of 95 %
   /// Risks in a fleet around the simulated sensor; present if the plan states the spread of the fleet.
   std::optional<GlobalRisks> fleet{};
-  /// Risks in the fleet of earlier units; present if the plan contains its row.
+  /// Risks in the fleet of earlier units; present if the plan contains the row of this fleet.
   std::optional<FleetForecast> earlier{};
 };
 
@@ -42,7 +42,7 @@ struct LimitForecast {
 [[nodiscard]] Result<std::vector<LimitForecast>> limit_forecasts(const Plan& plan, const PlanPrediction& prediction);
 
 /// Forecast of one limit on a measure with a row in [[limits.fleet]]: with the standard uncertainty `u` of that row,
-/// and with half of it.
+/// and with half of this uncertainty.
 struct MeasureForecast {
   std::string measure;
   std::optional<double> at_least{}, at_most{};

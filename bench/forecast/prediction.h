@@ -48,7 +48,7 @@ struct PlanPrediction {
 
 /// Returns the plan with all numbers of frames per presentation. If the plan does not state a number and uses graded
 /// answers, the number becomes the smallest of 1, 2, 4 and 8 whose variance (graded_precision.h) times the time of a
-/// presentation (bench_time()) is within 10 % of the minimum. It becomes four if no time or no threshold is predicted.
+/// presentation (bench_time()) is within 10 % of the minimum; the number is 4 if no time or threshold is predicted.
 /// Binary answers use one frame.
 [[nodiscard]] Plan with_frames(Plan plan, const ExperimentInputs& inputs);
 

@@ -18,8 +18,8 @@ struct ContrastInformation {
 
 /// Returns an equivalent number of presentations for each of `points`, at least 1: this number in each set-up, all at
 /// the contrast of the point, would determine S75 as precisely as the fit of a ramp (RampFit). `shown_k`: contrasts of
-/// the presentations of a set-up. Between the points, the logarithms of information and ratio are interpolated
-/// linearly; beyond them they are constant. Precondition: `points` and `shown_k` are not empty, information > 0, ratios
+/// the presentations of a set-up. The logarithms of information and ratio are interpolated linearly between the points
+/// and are constant beyond the points. Precondition: `points` and `shown_k` are not empty, information > 0, ratios
 /// > 0.
 [[nodiscard]] std::vector<double> equal_presentations(std::span<const ContrastInformation> points,
                                                       std::span<const double> shown_k, const ContrastNoise& noise);

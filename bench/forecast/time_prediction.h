@@ -26,8 +26,8 @@ struct TimePrediction {
 /// `interrupted`.
 [[nodiscard]] Result<double> predict_estimate_s(const ExperimentInputs& inputs, std::stop_token stop);
 
-/// Returns the draws per size for which the direct estimate meets the requested standard error, which is about (0.046 +
-/// 0.285 q) / sqrt(draws) of S75. The result is not limited.
+/// Returns the draws per size at which the relative standard error of S75, about (0.046 + 0.285 `q_eff`) / sqrt(draws),
+/// meets the request of `accuracy` (`q_eff`: see ContrastOutlook). At least Accuracy::noise_draws; no upper limit.
 [[nodiscard]] double needed_draws(const Accuracy& accuracy, double q_eff);
 
 }  // namespace todbench

@@ -33,8 +33,8 @@ using AdaptiveRun = std::vector<AdaptiveVisit>;
                                                                           const std::vector<AdaptiveRun>& runs);
 
 /// Order of the visits of AdaptiveSchedule if all set-ups are equally informative. The next visit goes to the set-up
-/// with the lowest price: the time of its changes and presentations, divided by the number of contrasts for which it is
-/// useful, times n + 1 for a set-up that was visited n times.
+/// with the lowest price (n + 1) t / c. n is the number of earlier visits to the set-up, t the time of its changes and
+/// presentations, and c the number of contrasts for which the visit is useful.
 class VisitOrder {
  public:
   /// `set_ups`: at least one.

@@ -34,7 +34,7 @@ struct ChartPoint {
   double ewma = 0, ewma_limit = 0;
   double cusum_up = 0, cusum_down = 0;
   bool in_reference = false;
-  bool signal = false;  ///< the value is beyond a limit of either chart
+  bool signal = false;  ///< EWMA or CUSUM is beyond its limit
 };
 
 /// Charts of one measure.
@@ -75,10 +75,10 @@ struct LimitCrossing {
   std::optional<double> best_days{}, earliest_days{}, latest_days{};
 };
 
-/// Fits the weighted line x = a + b t with weights 1 / (u^2 + scatter^2). The 95 % interval of the crossing (Fieller
-/// 1954) contains all t with (a + b t - limit)^2 <= z^2 (1 / W + (t - tm)^2 var b). Only times after the last value are
-/// included. The function does not report that the last value is already beyond the limit. Empty for fewer than three
-/// values or a single time.
+/// Fits x = a + b t (x: value, t: days) with weights 1 / (u^2 + scatter^2). The 95 % interval of the crossing (Fieller
+/// 1954) contains all t after the last value with (a + b t - limit)^2 <= z^2 (1 / W + (t - tm)^2 var b). W is the sum
+/// of the weights, tm the weighted mean of t, and z = 1.96. The function does not report that the last value is already
+/// beyond the limit. Empty for fewer than three values or a single time.
 [[nodiscard]] std::optional<LimitCrossing> crossing(const std::vector<ChartValue>& values, double scatter,
                                                     double limit);
 

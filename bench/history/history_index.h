@@ -30,7 +30,7 @@ enum class Adding {
 };
 
 /// Index of sessions. Session folders do not contain events. The file FILE.events.csv next to the index therefore also
-/// stores them, and a rebuilt index reads them from there. One writer at a time; one thread.
+/// stores the events, and a rebuilt index reads this file. One writer at a time; one thread.
 class HistoryIndex {
  public:
   /// Opens the index, or creates it and its folder. A write-protected index is opened for reading. Errors:

@@ -39,8 +39,8 @@ struct HistorySession {
   std::string resumes_sha256{};
 };
 
-/// Returns the condition under which a value is compared. For an acuity it contains the observer, unless the observer
-/// is hvs-1: "dT=2K observer hvs-2". Acuities by different observers are not compared.
+/// Returns the condition under which a value is compared. The condition of an acuity contains the observer, unless the
+/// observer is hvs-1: "dT=2K observer hvs-2". Acuities by different observers are not compared.
 [[nodiscard]] std::string stated_condition(const HistorySession& session, const HistoryValue& value);
 
 /// Reads the record from small files that the manifest confirms. A simulation has the vendor "simulation" and no serial

@@ -29,7 +29,7 @@ struct AppliedRow {
   bool from_run = false;            ///< added by the run, not stated in the plan
 };
 
-/// Intervals of the ratio of the measured acuity to the acuity of the twin. Rows common to both cancel.
+/// Intervals of the ratio of the measured acuity to the acuity of the twin. Rows common to camera and twin cancel.
 struct ExpandedRatio {
   Interval ci95, ci90;
 };

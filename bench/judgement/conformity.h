@@ -45,8 +45,8 @@ struct Conformity {
 [[nodiscard]] Result<Conformity> conformity(const MeasuredValue& measured, const ToleranceLimits& tolerance,
                                             ConformityRule rule, double guard_band);
 
-/// Returns the guard band z(1 - r) u, with which a value at the acceptance limit has the risk r of a wrong acceptance.
-/// With finite degrees of freedom, t replaces z. Precondition: 0 < risk <= 0.5, u > 0.
+/// Returns the guard band with which a value at the acceptance limit has this risk of a wrong acceptance: u times the
+/// (1 - risk) quantile of Student's t (infinite degrees of freedom: normal). Precondition: 0 < risk <= 0.5, u > 0.
 [[nodiscard]] double guard_band_for_risk(double risk, const MeasuredValue& measured);
 
 /// Returns the guard band 2 u; with finite degrees of freedom, the guard band with the same risk by Student's t.

@@ -35,8 +35,8 @@ struct LimitAnswer {
   std::optional<double> p_conformity{};
 };
 
-/// Decides by `rule`. The guard band on each side is the half-width of the interval on that side. With
-/// `guard_band_risk`, it is the width with which a value at the acceptance limit has this risk of a wrong acceptance. A
+/// Decides by `rule`. The guard band on each side is the half-width of the interval on that side. `guard_band_risk`
+/// replaces this width by the width at which a value at the acceptance limit has this risk of a wrong acceptance. A
 /// value on the limit meets the limit. If an open interval does not allow a decision, the result is inconclusive under
 /// every rule. Precondition: 0 < guard_band_risk <= 0.5.
 [[nodiscard]] LimitAnswer decide(const LimitQuestion& question, ConformityRule rule,

@@ -32,7 +32,7 @@ struct BudgetShare {
 /// Uncertainty from all rows of a budget.
 struct CombinedUncertainty {
   double u = 0;                     ///< standard uncertainty
-  std::optional<double> nu_eff{};   ///< Welch-Satterthwaite; empty: infinite
+  std::optional<double> nu_eff{};   ///< effective degrees of freedom (JCGM 100:2008, G.4); empty: infinite
   double k = 0;                     ///< Student's t for 95 % and nu_eff, not truncated
   double expanded_gum = 0;          ///< k u
   double expanded_monte_carlo = 0;  ///< half-width of the 95 % interval (JCGM 101:2008)
@@ -53,7 +53,7 @@ inline constexpr int session_budget_draws = 200000;
 
 /// Reads the file of `todbench budget` (docs/method/conformity.md). Errors: `invalid_input` with file and line.
 [[nodiscard]] Result<UncertaintyBudget> read_budget(const std::filesystem::path& file);
-/// Parses the text of such a file. `name`: name of the text in messages.
+/// Parses the text of a budget file. `name`: name of the text in messages.
 [[nodiscard]] Result<UncertaintyBudget> parse_budget(std::string_view text, const std::string& name);
 
 }  // namespace todbench

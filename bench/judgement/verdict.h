@@ -26,7 +26,7 @@ enum class VerdictKind { pass, fail, inconclusive };
 /// Returns the decision rule of the plan in words.
 [[nodiscard]] std::string in_words(ConformityRule rule, const std::optional<double>& guard_band_risk = {});
 
-/// When a verdict was made.
+/// Time at which a verdict was made.
 enum class JudgedWhen {
   at_end_of_run,
   afterwards,  ///< the run stored no verdict: older program, or a run that was cut off
@@ -126,7 +126,7 @@ struct MeasuredQuantity {
   Interval ci95{};
 };
 
-/// Input of judge(). The objects to which it refers must exist during the call.
+/// Input of judge(). The objects to which the input refers must exist during the call.
 struct JudgementInput {
   const LimitsPlan& limits;
   const TodCurve& curve;  ///< curve; has no points if the run ended before the first point
@@ -148,7 +148,7 @@ struct JudgementInput {
 /// all other cases it is pass. No other code makes this decision.
 [[nodiscard]] Verdict judge(const JudgementInput& evidence);
 
-/// Returns whether the plan has limits. Without limits a verdict states only whether every threshold was found.
+/// Returns whether the judged plan has limits. Without limits a verdict states only whether every threshold was found.
 [[nodiscard]] bool limits_asked(const Verdict& verdict);
 /// Returns the decision as a word; "not judged" in place of "pass" if the plan has no limits.
 [[nodiscard]] std::string_view decision_word(const Verdict& verdict);
@@ -157,7 +157,7 @@ struct JudgementInput {
 /// is not at its lower bound, and a likelihood without a ridge (fewer sizes than parameters).
 [[nodiscard]] bool threshold_identified(const PsychometricFit& fit);
 
-/// Returns the threshold of a fit that identifies it.
+/// Returns the threshold of a fit if threshold_identified(); otherwise empty.
 [[nodiscard]] std::optional<double> identified_threshold(const PsychometricFit& fit);
 
 /// Converts a decision; a conditional decision becomes inconclusive.

@@ -27,10 +27,10 @@ struct DynamicPoint {
 };
 /// Results at one speed.
 struct DynamicAcuity {
-  double speed_mrad_s = 0, speed_px = 0;  ///< pixels per frame
+  double speed_mrad_s = 0, speed_px = 0;  ///< speed_px: pixels per frame
   double smear_px = 0;                    ///< speed times time constant
   double exposure_px = 0;                 ///< speed times exposure
-  double lag_px = 0;                      ///< mean lag, removed before judging
+  double lag_px = 0;                      ///< mean lag of the picture behind the target, removed before judging
   std::vector<DynamicPoint> points;       ///< one point for each SequenceObserver
 };
 

@@ -22,7 +22,7 @@ struct DynamicContrast {
   std::vector<DynamicAcuity> speeds;
 };
 
-/// Time constant from the lag of the plate in the pictures, to the right and to the left: lag = tau + exposure / 2.
+/// Time constant tau from the lag (in time) of the plate in the pictures, in both directions: lag = tau + exposure / 2.
 struct MeasuredTimeConstant {
   double time_constant_ms = 0;
   Interval ci95_ms;
@@ -30,8 +30,8 @@ struct MeasuredTimeConstant {
   double offset_px = 0;    ///< error of the registration at rest, which passes in both directions eliminate
   int passes = 0;
 };
-/// Fits v lag = v (tau + T / 2) + direction x offset by least squares over the moving passes with a known start of the
-/// motion. The interval uses Student's t. Empty: fewer than four such passes, or only one direction.
+/// Fits v lag = v (tau + T / 2) + direction x offset (v: speed, T: exposure) by least squares over the moving passes
+/// with a known start of the motion. The interval uses Student's t. Empty: fewer than four passes, or one direction.
 [[nodiscard]] std::optional<MeasuredTimeConstant> time_constant_of(const std::vector<MovingPassRecord>& passes,
                                                                    double exposure_ms);
 

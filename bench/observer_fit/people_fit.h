@@ -56,7 +56,7 @@ struct PeopleFitOptions {
   int replicates = 299;  ///< replicates of the bootstrap of the goodness of fit, at least 19
   int draws = 384;       ///< noise vectors per answer probability, an even number
   std::uint64_t seed = 1;
-  /// The model is rejected if its p is at most this value divided by the number of people (Bonferroni).
+  /// The model is rejected if its p-value is at most this value divided by the number of people (Bonferroni).
   double least_p = 0.01;
   std::function<void(std::size_t done, std::size_t planned)> on_progress{};
 
@@ -89,8 +89,8 @@ struct PeopleFit {
   std::array<PeopleSpread, observer_key_count> spread{};  ///< spread of the free parameters; empty for one person
   ObserverValues values{};                                ///< values of the person, or means over people
   std::array<Interval, observer_key_count> ci95{};
-  double least_p = 1;                       ///< smallest p of the model among the people
-  bool accepted = false;                    ///< p exceeds the limit from `options.least_p` for every person
+  double least_p = 1;                       ///< smallest p-value of the goodness of fit among the people
+  bool accepted = false;                    ///< the p-value exceeds the limit from `options.least_p` for every person
   std::vector<std::string> not_identified;  ///< sentences: parameters that the answers do not determine
   /// Returns whether the fitted observer may be used.
   [[nodiscard]] bool usable() const { return accepted && not_identified.empty(); }

@@ -18,7 +18,7 @@ struct BenchAir {
 [[nodiscard]] double absolute_humidity_g_m3(const BenchAir& air);
 
 /// Returns the factor by which `length_m` of air reduces a contrast, from the shipped tables without aerosol. The
-/// optical depth of the model atmospheres at this length is interpolated linearly in their absolute humidity. It is
+/// optical depth of the model atmospheres at this length is interpolated linearly in their absolute humidity and is
 /// extrapolated beyond the most humid atmosphere up to 30 g/m3. The band models of the tables are extrapolated to paths
 /// of a few metres, so the uncertainty of the loss is large (bench_air_relative_half_width). Errors: `invalid_input`
 /// (no band of the tables is near `band`; more than 30 g/m3 of water vapour; a length that is not positive, or longer

@@ -9,7 +9,7 @@ namespace todbench {
 
 /// Decision rules of ILAC-G8:09/2019, 4.2. Agree on the rule before the measurement (ISO/IEC 17025, 7.1.3).
 enum class ConformityRule {
-  guarded_acceptance_and_rejection,  ///< pass if inside the limit by the guard band, fail if outside it by the guard
+  guarded_acceptance_and_rejection,  ///< pass if inside the limit by the guard band, fail if outside by the guard
                                      ///< band, else inconclusive
   simple,                            ///< 4.2.1: pass inside the tolerance, else fail; risk up to 50 % at the limit
   guarded,                           ///< 4.2.2: pass if inside the limit by the guard band, else fail

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks of keys of limits, zones, fleet and budget against the rest of the plan. Each function returns the mistakes in
-// a value. The comment of the function states the condition for a correct value.
+// a value; its comment states the condition for a correct value. `row`: row of a repeated section, otherwise 0.
 #pragma once
 
 #include <cstddef>

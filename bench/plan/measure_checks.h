@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks of keys of [measures] against the rest of the plan. Each function returns the mistakes in a value. The comment
-// of the function states the condition for a correct value.
+// of the function states the condition for a correct value. [measures] has no rows, so `row` is 0.
 #pragma once
 
 #include <cstddef>

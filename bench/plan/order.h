@@ -53,7 +53,7 @@ struct OrderNumber {
 [[nodiscard]] std::span<const OrderText> order_text_keys();
 /// Returns the keys with numbers, in the order of reports.
 [[nodiscard]] std::span<const OrderNumber> order_number_keys();
-/// Returns the mistake of a text; empty if it has its form or is empty.
+/// Returns the mistake of a text; empty if the text is empty or has this form.
 [[nodiscard]] std::optional<std::string> order_mistake(OrderForm form, std::string_view text);
 
 /// Statement on every report with an order (ISO/IEC 17025:2017, 7.8.2.1 note 2).

@@ -28,7 +28,7 @@ enum class Side {
                                                      double ifov_mrad);
 /// Returns the options for the camera of the plan, with its contrast unit.
 [[nodiscard]] MeasurementOptions camera_options(const Plan& plan, const std::vector<TargetPlate>& plates);
-/// Returns every plate (by the name of the plate) in every mounting at every contrast, with the phases of the side.
+/// Returns the options of a schedule with every plate in every mounting at every contrast, and the phases of `side`.
 [[nodiscard]] ConstantStimuliOptions stimuli_options(const Plan& plan, const std::vector<TargetPlate>& plates,
                                                      double ifov_mrad, Side side);
 /// Returns the ramp of a plan of kind ramp, for the camera.
@@ -57,15 +57,15 @@ struct ChosenEstimator {
 [[nodiscard]] ChosenEstimator chosen_estimator(const Plan& plan, const SensorSpec& sensor);
 /// Frames that a graded answer averages if the plan does not state the number.
 inline constexpr int frames_of_graded_answers = 4;
-/// Smallest number of presentations per contrast for graded answers. The scatter with fewer has not been studied.
+/// Smallest number of presentations per contrast for graded answers. The scatter with fewer presentations is unknown.
 inline constexpr int least_graded_presentations = 8;
 /// Returns the frames per presentation that the plan states for a contrast; 0: not stated, or no such contrast.
 [[nodiscard]] int frames_at(const Plan& plan, double delta_t_k);
 /// Chooses the kind of answers that the plan names. If the plan does not name the kind, chooses graded answers only
 /// when their intervals are validated: function of the twin without a lapse rate, contrasts in kelvin, and a ramp or at
 /// least eight presentations at each contrast. Otherwise chooses binary answers. No other code chooses the kind. The
-/// number of frames is for `delta_t_k` (empty: first contrast of the plan). If the plan does not state the number, it
-/// is four for graded answers.
+/// number of frames is for `delta_t_k` (empty: first contrast of the plan). If the plan does not state the number of
+/// frames, graded answers use frames_of_graded_answers.
 [[nodiscard]] AnswersTaken chosen_answers(const Plan& plan, const SensorSpec& sensor,
                                           std::optional<double> delta_t_k = std::nullopt);
 /// Returns the options with the equivalence margin of the limits; 10 % if the plan has none.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Checks of keys of schedule, ramp, simulation and fit against the rest of the plan. Each function returns the mistakes
-// in a value. The comment of the function states the condition for a correct value.
+// in a value; its comment states the condition for a correct value. `row`: row of a repeated section, otherwise 0.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@ namespace todbench {
 /// Requires for a ramp: a stated value.
 [[nodiscard]] ValueMistakes check_ramp_from(const Plan& plan, std::size_t row);
 /// Requires for a ramp: a value nearer to 0 than from_delta_t_k, of the same sign, and all contrasts of the target
-/// between the two.
+/// between both values.
 [[nodiscard]] ValueMistakes check_ramp_to(const Plan& plan, std::size_t row);
 /// Requires for a ramp: a stated value.
 [[nodiscard]] ValueMistakes check_contrast_lag(const Plan& plan, std::size_t row);

@@ -32,8 +32,8 @@ struct TargetSet {
   std::vector<double> azimuths_deg;           ///< sides from which models are seen; empty: the views are pictures
   std::vector<std::string> notes;             ///< messages about pictures whose background is not uniform
 };
-/// Loads a target set by name ("small-craft") or file. Files that it names are relative to its folder. Without readers
-/// a set of pictures is refused. Errors: `invalid_input` with the file (as load_scene(); a picture without a target, a
+/// Loads a target set by name ("small-craft") or file. Files that the set names are relative to its folder. Without
+/// readers a set of pictures is refused. Errors: `invalid_input` (as load_scene(); a picture without a target, a
 /// target that touches the edge of its region, pixels without temperature, a mask of a wrong size), those of readers.
 [[nodiscard]] Result<TargetSet> load_target_set(std::string_view reference, const SetReaders& readers = {});
 
@@ -50,7 +50,7 @@ struct CutTarget {
                          ///< background
   cv::Size target_px;    ///< extent of the target
   double background_k = 0;
-  /// Standard deviation of the pixels beside the target; empty if there are too few.
+  /// Standard deviation of the background pixels, in K; empty if there are too few pixels.
   std::optional<double> background_sd_k{};
 };
 /// Cuts the target. The background is `background_k` of the cut. If `background_k` is empty, the background is the mean
@@ -58,7 +58,7 @@ struct CutTarget {
 /// the picture. Errors: `invalid_input`.
 [[nodiscard]] Result<CutTarget> cut_target(const cv::Mat1d& kelvin, const PictureCut& cut);
 
-/// Returns the smallest and largest element of the pictures of a set in metres; empty for models.
+/// Returns the smallest and largest side of an element of the pictures of a set, in m; empty for models.
 [[nodiscard]] std::optional<std::pair<double, double>> element_range_m(const TargetSet& set);
 
 }  // namespace todbench

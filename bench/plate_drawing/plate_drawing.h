@@ -53,16 +53,16 @@ struct CutOutRow {
 };
 /// Returns the cut-outs in the order of the plate: triangles, rectangles, bars. `size_percent`: permitted error of a
 /// size. If all edges of an equilateral triangle are displaced by d, its size S changes by the share d / (3^(-3/4) S).
-/// The tolerance of an edge is therefore size_percent of 0.4387 S. For rectangles and bars it is size_percent of half
-/// the shorter side.
+/// The tolerance of an edge is therefore size_percent of 0.4387 S. For rectangles and bars the tolerance is
+/// size_percent of half the shorter side.
 [[nodiscard]] std::vector<CutOutRow> cut_out_rows(const TargetPlate& plate, double size_percent);
 
 /// Relative errors of the size of a triangle, in percent. An error of all sizes changes the acuity by the same
 /// percentage.
 struct SizeErrors {
-  double edges_percent = 0;    ///< all edges displaced outwards: d / (0.4387 S)
-  double corners_percent = 0;  ///< corners rounded with a radius r: 1.027 (r / S)^2, always smaller
-  /// Straight walls of a sheet, seen from the distance of observation, at the position of the triangle.
+  double edges_percent = 0;    ///< all edges displaced outwards by d: d / (0.4387 S), in which S is the size
+  double corners_percent = 0;  ///< corners rounded with a radius r: -1.027 (r / S)^2, not above 0
+  /// Straight walls of a sheet, seen from the distance of observation, at the position of the triangle; not above 0.
   double sheet_percent = 0;
 };
 /// Errors of manufacture, and the distance of observation.

@@ -23,7 +23,7 @@ inline constexpr std::array all_range_models{RangeModel::tod, RangeModel::acquir
 /// Returns the name of the enumerator.
 [[nodiscard]] std::string_view to_string(RangeModel model);
 
-/// Source of M75 and V50.
+/// Source of the criteria M75 (RangeTask::m75) and V50 (value of the TTP metric for a probability of 50 %).
 enum class CriterionSource {
   published,   ///< V50 = 8.5 for people and small craft (Krapels et al. 2006), M75 = 5.1 (EO-VISTA, 4.2.3)
   m75_stated,  ///< V50 is M75 / 0.6
@@ -44,8 +44,8 @@ struct RangeQuestion {
   /// M75.
   std::string m75_observer{};
   std::string curve_observer{};     ///< observer of the TOD curve; empty: not known
-  double n50 = 6;                   ///< cycles of ACQUIRE (2-D) for 50 %; 6: identification
-  double mtdp_n50 = 6;              ///< cycles of the MTDP-like curve for 50 %; 6: identification
+  double n50 = 6;                   ///< cycles of ACQUIRE (2-D) for a probability of 50 %; 6: identification
+  double mtdp_n50 = 6;              ///< cycles of the MTDP-like curve for a probability of 50 %; 6: identification
   double v50 = 8.5;                 ///< V50 of the TTP model
   Atmosphere air{};                 ///< air between target and camera
   double extinction_u_percent = 0;  ///< relative standard uncertainty of the extinction
@@ -70,15 +70,15 @@ struct RangeSources {
   std::optional<TodTransfer> transfer{};
 };
 
-/// Evaluates every requested model. P is stated at common ranges up to twice the longest R75. A model without a result
-/// states the reason in `reason`. The results of different models are not averaged. The TOD model uses predict_range()
-/// and adds the uncertainty of the air to the interval. Errors: `invalid_input` (a number of the question out of
-/// range).
+/// Evaluates every requested model. The probability is stated at common ranges up to twice the longest R75 (range for
+/// 75 %). A model without a result states the reason in `reason`. The results of different models are not averaged. The
+/// TOD model uses predict_range() and adds the uncertainty of the air to the interval. Errors: `invalid_input` (a
+/// number of the question out of range).
 [[nodiscard]] Result<std::vector<ModelRange>> range_models(std::span<const RangeModel> asked,
                                                            const RangeSources& sources, const RangeQuestion& question);
 
 /// Adds the uncertainty of M75 to an interval of the TOD range, in quadrature in ln R. The contribution is the change
-/// of R75 if M75 is multiplied by exp(+-1.96 u). A limit is open if R75 is outside the curve on that side.
+/// of R75 if M75 is multiplied by exp(+-1.96 m75_u_percent / 100). A limit is open if R75 is outside the curve there.
 [[nodiscard]] Interval joined_with_m75(std::span<const TodThreshold> thresholds, const RangeTask& task, double r75_m,
                                        const Interval& of_curve, double m75_u_percent);
 /// Returns a phrase about the criterion M75 or V50 of a model: its observer, its targets and its source.

@@ -35,7 +35,7 @@ struct AccuracyBill {
   std::vector<std::string> sentences;
 };
 
-/// Input of accuracy_bill(). The objects to which it refers must exist during the call.
+/// Input of accuracy_bill(). The objects to which the input refers must exist during the call.
 struct BillInput {
   std::span<const Presentation> presentations;
   const TodCurve& curve;

@@ -24,13 +24,13 @@ namespace todbench {
 /// Returns a stated number with up to six significant digits and without trailing zeros: 20, 0.25, 47.5.
 [[nodiscard]] std::string stated(double value);
 
-/// Returns the number of digits after the point with which the half-width of the interval has two significant digits
-/// (JCGM 100:2008, 7.2.6). If one limit is open, the distance from the value to the other limit replaces the
-/// half-width. Without any width, the value has three significant digits.
+/// Returns the number of digits after the point with which the half-width has two significant digits (JCGM 100:2008,
+/// 7.2.6), or the value if the half-width exceeds the value. If one limit is open, the distance from the value to the
+/// other limit replaces the half-width. Without any width, the value or the limit has three significant digits.
 [[nodiscard]] int decimals_for(std::optional<double> value, const Interval& interval);
 
-/// Returns "0.480 [0.468, 0.493]"; "0.480 [≥ 0.468]" if one limit is open; "≥ 0.468" without a value; a dash if both
-/// are absent.
+/// Returns "0.480 [0.468, 0.493]"; "0.480 [≥ 0.468]" if one limit is open; "≥ 0.468" without a value; a dash if value
+/// and limits are absent.
 [[nodiscard]] std::string with_interval(std::optional<double> value, const Interval& interval);
 
 /// Returns whether there is a value or a bound.

@@ -79,7 +79,7 @@ struct ReportData {
 
   std::optional<SessionMeasures> measures;  ///< physical measures; empty: not requested
 
-  /// Limits of the acuity and thresholds at the display. Both do not affect the verdict.
+  /// Limits of the acuity and thresholds at the display. Neither affects the verdict.
   std::optional<DisplayRecord> at_display;
 
   /// Uncertainty of the measured curve, or of the curve of a simulation alone.

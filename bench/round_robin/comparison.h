@@ -33,8 +33,8 @@ enum class ReferenceMethod {
 struct ReferenceValue {
   ReferenceMethod method = ReferenceMethod::weighted_mean;
   Consensus value;
-  double k = 2;           ///< coverage factor of 95 %: 2, or Student's t with N - 1 for Paule and Mandel
-  double expanded_u = 0;  ///< k u; for the median half of its shortest interval
+  double k = 2;           ///< coverage factor of 95 %: 2; Paule and Mandel: Student's t with (number of results - 1)
+  double expanded_u = 0;  ///< k u; for the median, half of the shortest 95 % interval
 };
 
 /// Result of a laboratory against the reference value.
@@ -45,7 +45,7 @@ struct DegreeOfEquivalence {
   double e_n = 0;         ///< difference / expanded_u
   double zeta = 0;        ///< 2 e_n
   bool in_reference = true;
-  bool outlying = false;  ///< the result, or its laboratory
+  bool outlying = false;  ///< the result or its laboratory is outlying
 };
 
 /// Evaluation of one item.
@@ -74,8 +74,8 @@ struct LaboratorySummary {
 /// Laboratory or single result with a deviation that is too large to be random.
 struct OutlyingResult {
   std::string laboratory, item, quantity;  ///< empty item: the laboratory over all its items
-  double zeta = 0;                         ///< zeta against the results that were not yet excluded when this one was
-                                           ///< found
+  double zeta = 0;                         ///< zeta against the results that were not yet excluded when this result
+                                           ///< was found
   double p = 0;                            ///< probability that any laboratory has a deviation of this size by chance
 };
 
@@ -95,8 +95,8 @@ struct RoundRobin {
 inline constexpr double outlying_significance = 0.025;
 
 /// Evaluates a comparison. The errors of a laboratory are assumed to be independent between items. The most improbable
-/// outlying laboratory or result is excluded, and the remaining results are tested again. If no more than half of the
-/// laboratories of an item would remain, none is excluded. If several laboratories are outlying, all laboratories may
+/// outlying laboratory or result is excluded, and the remaining results are tested again. All exclusions are withdrawn
+/// if at most half of the laboratories of an item would remain. If several laboratories are outlying, all of them may
 /// understate their uncertainties; the reference values then come from all results. `seed`: seed of the draws for the
 /// medians. Errors: `invalid_input` (no item, or an item with fewer than two laboratories).
 [[nodiscard]] Result<RoundRobin> evaluated(std::vector<ComparedItem> items, std::uint64_t seed);

@@ -64,14 +64,14 @@ inline constexpr int median_draws = 20'000;
 
 /// Return the variance between laboratories in excess of their uncertainties, 0 or more. The first is the estimate of
 /// moments by DerSimonian and Laird 1986 (equation 8). The second is the estimate by Paule and Mandel 1982, at which
-/// the generalised chi2 equals its expectation N - 1.
+/// the generalised chi2 equals its expectation N - 1 (N: number of values).
 [[nodiscard]] double dersimonian_laird_variance(std::span<const LaboratoryValue> values);
 [[nodiscard]] double paule_mandel_variance(std::span<const LaboratoryValue> values);
 
 /// Mean with weights 1/(u^2 + variance).
 struct RandomEffects {
   Consensus mean;  ///< u for known variances
-  /// Standard error of Hartung and Knapp 2001, at least mean.u; used with Student's t and N - 1.
+  /// Standard error of Hartung and Knapp 2001, at least mean.u; used with Student's t (number of values minus 1).
   double hartung_knapp = 0;
 };
 /// Returns the mean for a given variance between laboratories.

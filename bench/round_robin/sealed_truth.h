@@ -27,7 +27,7 @@ inline constexpr std::string_view sealed_schema = "todbench-round-robin-1";
 struct TruthCheck {
   SealedValue truth;
   double difference = 0;  ///< reference value minus true value
-  double e_n = 0;         ///< difference / sqrt(U^2 of the reference value + 4 u^2 of the truth)
+  double e_n = 0;         ///< difference / sqrt(U^2 + 4 u^2), U: expanded_u of the reference value, u: truth.u
   bool held = false;      ///< |e_n| <= 1: the interval of the reference value contains the true value
 };
 /// Returns the checks in the order of the items. Errors: `invalid_input` for an item or quantity that was not sealed.

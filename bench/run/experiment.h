@@ -42,8 +42,8 @@ struct ExperimentListener {
   /// Called for every frame of the camera as it arrives, valid or not. Not called for frames of the twin.
   std::function<void(const Frame&)> on_frame{};
   std::function<void(SessionCurve, const SetUpRecord&)> on_set_up{};
-  /// Called when a trial has been written to the disk. The patch is the one that the observer judged. Its reference is
-  /// valid only during the call.
+  /// Called when a trial has been written to the disk. The patch is the patch that the observer judged. The references
+  /// are valid only during the call.
   std::function<void(SessionCurve, const Trial&, const Patch&)> on_trial{};
 };
 

@@ -69,7 +69,7 @@ struct FittedCurve {
   TodCurve curve;
   TwinShapesOutcome said;
   std::optional<TodCurve> by_twin{};   ///< fit with the function of the twin, if `curve` has the surrogate's function
-  std::map<double, double> model_u{};  ///< by set contrast, if the pictures contradict the model
+  std::map<double, double> model_u{};  ///< standard u of ln S75 by set contrast, if the surrogate is unconfirmed()
 
   [[nodiscard]] const TodCurve& functions_of_twin() const { return by_twin ? *by_twin : curve; }
 };

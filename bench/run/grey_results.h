@@ -22,12 +22,12 @@ namespace todbench {
 struct GreySummary {
   double set_delta_t_k = 0;
   int frames = 0;
-  double levels = 0;  ///< mean contrast
+  double levels = 0;  ///< mean contrast in grey levels
   double levels_per_k = 0, lowest_per_k = 0, highest_per_k = 0;
-  /// Root mean square over the frames. This value does not decrease with the number of frames, because frames share
-  /// fixed pattern and rounding.
+  /// Root mean square over the frames. The uncertainty does not decrease with the number of frames, because all frames
+  /// share fixed pattern and rounding.
   double relative_uncertainty = 0;
-  double noise_steps = 0;  ///< smallest value of all frames
+  double noise_steps = 0;  ///< noise in steps of the grey levels: smallest value of all frames
 };
 /// Returns the summary of the frames of one contrast.
 [[nodiscard]] GreySummary grey_summary(const std::vector<GreyFrame>& frames, double set_delta_t_k);

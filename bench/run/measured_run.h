@@ -54,7 +54,7 @@ struct MeasuredRun {
                                                                FrameStreamWriter* recording, const OpenSession& open,
                                                                std::stop_token stop);
 
-/// Waits until the camera meets the condition of [camera.warm_up], and returns the sentence about it. Tolerates the
+/// Waits until the camera meets the condition of [camera.warm_up], and returns a sentence about the wait. Tolerates the
 /// rejection of up to half of the frames, because a camera often corrects itself while it warms up.
 [[nodiscard]] Result<std::string> warmed_up(FrameSource& camera, const Plan& plan, const std::stop_token& stop);
 

@@ -22,9 +22,9 @@ using PageWriter = std::function<Result<std::vector<std::string>>(const ReportDa
 /// comes from open_session(). Errors: those of report_data() and read_human().
 [[nodiscard]] Result<ReportData> report_data_of(const Session& session, const std::filesystem::path& folder);
 
-/// Stores the verdict if the session had none, calls `write_pages`, and updates the manifest with both. A signed
-/// session is rejected. If changed files of a session were accepted, its manifest stays unchanged, so that later checks
-/// still report them. Errors: `io` with the path; those of report_data_of() and `write_pages`.
+/// Stores the verdict if the session had none, calls `write_pages`, and lists verdict and pages in the manifest. A
+/// signed session is rejected. If changed files of a session were accepted, its manifest stays unchanged, so that later
+/// checks still report the changes. Errors: `io` with the path; those of report_data_of() and `write_pages`.
 [[nodiscard]] Result<ReportData> rebuild_report(const Session& session, const std::filesystem::path& folder,
                                                 const PageWriter& write_pages);
 /// Writes the report of a signed session as a revision in revisions/, signed with the key of the session. Errors:

@@ -34,7 +34,7 @@ enum class SceneDependenceVerdict {
 struct SizeDependence {
   double size_mm = 0, size_px = 0;
   int triangles = 0;
-  double ratio = 1;  ///< response with the bar in the field divided by the response without it
+  double ratio = 1;  ///< response with the bar in the field divided by the response without the bar
   Interval ci95;     ///< simultaneous for all sizes: each at 1 - 0.05 / number of sizes
 };
 
@@ -83,8 +83,8 @@ using MoveBar = std::function<Result<void>(bool in, std::stop_token stop)>;
 /// have a linear scale and are clipped at full scale.
 [[nodiscard]] std::unique_ptr<FrameSource> with_hot_bar(std::unique_ptr<FrameSource> camera, cv::Rect bar,
                                                         double kelvin, std::shared_ptr<const bool> in);
-/// Returns the position of the bar: left of a plate in the centre of the picture, 1/20 of its width and 3/5 of its
-/// height. Empty: too little room.
+/// Returns the position of the bar: left of a plate in the centre of the picture. The bar has 1/20 of the picture's
+/// width and 3/5 of its height. Empty: too little room.
 [[nodiscard]] std::optional<cv::Rect> place_of_bar(cv::Size picture, const TargetPlate& plate, double px_per_mm);
 
 /// Measures the first plate of the plan in its first mounting at its largest contrast. With the camera of the plan, the

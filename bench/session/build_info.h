@@ -9,7 +9,7 @@ namespace todbench {
 /// Version, commit and compiler of the program.
 struct BuildInfo {
   std::string_view version;  ///< version of the project, e.g. "0.1.0"
-  /// Commit of the sources, with "-modified" if the tree differed from it; "unknown" outside a repository.
+  /// Commit of the sources, with "-modified" if the tree differed from the commit; "unknown" outside a repository.
   std::string_view commit;
   std::string_view compiler;
 };

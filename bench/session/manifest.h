@@ -26,9 +26,9 @@ inline constexpr std::string_view manifest_name = "manifest.json";
 
 /// Comparison of a folder with its manifest. Paths are relative to the folder, sorted.
 struct ManifestCheck {
-  /// Files that differ from their entries. Includes manifest.json if the program did not write the file in this form.
-  /// This is the case if it is unreadable, if its own digest does not cover its entries, or if its bytes differ from
-  /// the canonical form of the entries.
+  /// Files that differ from their entries. Includes manifest.json if the program did not write the manifest in this
+  /// form: the manifest is unreadable, its digest does not cover its entries, or its bytes differ from the canonical
+  /// form of the entries.
   std::vector<std::string> changed;
   std::vector<std::string> missing;  ///< listed but absent; includes manifest.json if absent
   std::vector<std::string> foreign;  ///< present but not listed, of any type; empty without a manifest

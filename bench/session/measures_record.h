@@ -64,7 +64,7 @@ struct MeasureLines {
 /// Returns the lines of all measures that were taken, their complete results, and the reasons for missing measures.
 [[nodiscard]] MeasureLines measure_lines(const CameraMeasures& measures);
 
-/// Returns the name, value and interval of each line. These are used as JudgementInput::measures.
+/// Returns the name, value and interval of each line, for JudgementInput::measures.
 [[nodiscard]] std::vector<MeasuredQuantity> quantities_of(const MeasureLines& lines);
 
 /// Measures of a session: of the camera (or of the simulated sensor alone) and of the twin.
@@ -82,7 +82,7 @@ struct SessionMeasures {
 /// number is not finite.
 [[nodiscard]] Result<Json> measures_record(const std::optional<CameraMeasures>& main,
                                            const std::optional<CameraMeasures>& twin);
-/// Returns the record of one camera as "main", with quantities, maps and reasons only. Errors: as above.
+/// Returns the record of one camera as "main", with quantities, maps and reasons only. Errors: as the overload above.
 [[nodiscard]] Result<Json> measures_record(const MeasureLines& main);
 /// Parses a record. Errors: `invalid_input` with the key (incomplete record, wrong type).
 [[nodiscard]] Result<SessionMeasures> measures_from(const Json& record);

@@ -73,7 +73,7 @@ class SessionFolder {
   /// Writes measures.json and its pictures in pictures/.
   [[nodiscard]] Result<void> write_measures(const std::optional<CameraMeasures>& main,
                                             const std::optional<CameraMeasures>& twin);
-  /// Writes a record of measures_record() in the same way. Errors: also the error of the record.
+  /// Writes a record of measures_record() as the overload above. Errors: also the error of the record.
   [[nodiscard]] Result<void> write_measures(Result<Json> record);
   /// Writes verdict.json.
   [[nodiscard]] Result<void> write_verdict(const Verdict& verdict);
@@ -125,8 +125,8 @@ struct Session {
 [[nodiscard]] Result<Session> read_session(const std::filesystem::path& folder);
 /// Returns the reason for an early end of the run; empty if the run was complete.
 [[nodiscard]] std::optional<std::string> ended_early(const Session& session);
-/// Returns the stored verdict. If no verdict is stored, the function judges the session now, and the verdict contains a
-/// remark about this.
+/// Returns the stored verdict. If no verdict is stored, the function judges the session now, and Verdict::judged is
+/// `afterwards`.
 [[nodiscard]] Verdict verdict_of(const Session& session);
 /// Stores a verdict that was made later, and lists it in the manifest. A run that was cut off has no manifest and stays
 /// unchanged. Errors: `io` with the path.

@@ -60,8 +60,8 @@ struct SignatureCheck {
   /// Contents confirmed by valid signatures: "manifest.json", "signed_utc" and "revisions".
   std::vector<std::string> covers{};
   /// SHA-256 of the signed record of each revision, from revision 2 on. Each record contains the digest of the previous
-  /// record. The folder alone cannot reveal that the newest revisions were removed; a digest that was kept elsewhere
-  /// can.
+  /// record. The folder alone cannot reveal that the newest revisions were removed; a digest kept elsewhere reveals the
+  /// removal.
   std::vector<std::string> revision_sha256{};
 };
 /// Verifies the signatures of manifest.json, signature.json and the list of revisions, and the digests of the

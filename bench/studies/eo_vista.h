@@ -15,7 +15,7 @@ namespace todbench {
 struct EoVistaOptions {
   Accuracy accuracy;
   int presentations = 24;  ///< pictures of the emulated camera at each contrast, with 40 answers per picture
-  int dsr_frames = 16;     ///< number of frames that DSR2 averages
+  int dsr_frames = 16;     ///< number of frames that the dynamic super-resolution DSR2 averages
   std::uint64_t seed = 1;
   std::stop_token stop{};
 };

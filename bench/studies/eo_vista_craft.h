@@ -13,7 +13,7 @@ namespace todbench {
 struct CraftPicture {
   std::string name;  ///< name of its file without extension
   std::string title, caption;
-  /// Range from the camera to the craft; 0 for the scene without a camera.
+  /// Range from the camera to the craft, in m; 0 for the scene without a camera.
   double range_m = 0;
   cv::Mat1f kelvin;
   double grey_low_k = 0, grey_high_k = 1;

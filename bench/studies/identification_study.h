@@ -41,7 +41,7 @@ struct IdentificationStudyTask {
   double m75 = 5.1;
   /// Motion of the targets across the picture.
   SceneMotion motion{};
-  /// How the observer uses the frames of a pass.
+  /// Use of the frames of a pass by the observer.
   SequenceObserver sequence = SequenceObserver::single_frame;
   /// Number of frames of a pass.
   int frames = 8;
@@ -80,11 +80,11 @@ struct Crossing75 {
 struct IdentificationStudy {
   std::vector<IdentificationPoint> points;
   double chance = 0;              ///< 1 / number of targets
-  double size_m = 0;              ///< mean over targets and aspects
-  double dt_rss_k = 0;            ///< mean over targets and aspects, before the air
+  double size_m = 0;              ///< size of a target, mean over targets and aspects
+  double dt_rss_k = 0;            ///< root-sum-square contrast, mean over targets and aspects, before the air
   SetCriterion r75_m;             ///< range with 75 % correct; the interval comes from resampling the draws of noise
   SetCriterion m75, v50;          ///< criteria of the set: M75 is M at r75_m on the TOD curve, and V50 is M75 / 0.6
-  std::string no_m75_because;     ///< empty with an M75
+  std::string no_m75_because;     ///< reason for a missing M75; empty: there is an M75
   std::vector<TodThreshold> tod;  ///< TOD curve of the same sensor and observer
   /// S75 of each point of `tod` over the open parameters of an observer with an eye; empty if there is no S75 at a
   /// limit of the parameters.

@@ -32,8 +32,8 @@ using PngEncoder = std::function<Result<std::string>(const cv::Mat1b& picture)>;
                                                                         const PersonExperiment& experiment);
 
 /// Answers of all people at one range. The interval is Wilson's interval for an effective number of independent
-/// answers. This number explains the scatter between people. For one person, or if the scatter is smaller than expected
-/// by chance, the number of answers replaces the effective number.
+/// answers, which explains the scatter between people. For one person, or if the scatter is smaller than expected by
+/// chance, the number of answers replaces the effective number.
 struct PeopleShare {
   int shown = 0, right = 0;
   Interval ci95;

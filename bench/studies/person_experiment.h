@@ -40,7 +40,7 @@ struct PersonTrial {
   std::size_t condition = 0;
   std::size_t truth = 0;   ///< index of the alternative; for `bars_resolved` 1 if no bars are shown
   std::size_t aspect = 0;  ///< index of the view of the target, for `identify`
-  std::size_t phase = 0;   ///< phase of the bars; for `identify` it follows from the draw
+  std::size_t phase = 0;   ///< phase of the bars; for `identify` the phase follows from the draw
   /// Number of the noise draw. For bars, the left interval uses this number and the right interval uses the next
   /// number.
   std::uint64_t draw = 0;
@@ -74,7 +74,7 @@ class PersonExperiment {
   /// Returns the shown picture in kelvin above the background; for two intervals both pictures, separated by a strip of
   /// background. Errors: those of stages after the camera.
   [[nodiscard]] Result<cv::Mat1f> picture_k(const PersonTrial& trial) const;
-  /// Returns the grey scale. It is the same for all trials of a condition and therefore does not depend on the answer.
+  /// Returns the grey scale, which is the same for all trials of a condition and thus does not depend on the answer.
   [[nodiscard]] GreyScale grey(const PersonTrial& trial) const { return grey_[trial.condition]; }
   /// Returns sensor, set or axis, and seed, for the record.
   [[nodiscard]] const Json& description() const { return description_; }
@@ -118,7 +118,7 @@ struct PersonResult {
   /// Bars: threshold of every frequency. For `bars_resolved`, empty if the person reported bars in more than a quarter
   /// of the frames without bars. The threshold of a person who always answers yes is meaningless.
   std::vector<SetCriterion> thresholds_k;
-  /// For `bars_resolved`: number of frames without bars at every frequency, and number of yes answers to them.
+  /// For `bars_resolved`: number of frames without bars at every frequency, and number of yes answers to these frames.
   std::vector<PersonShare> false_alarms;
 };
 /// Evaluates the first answers.size() trials.

@@ -72,7 +72,7 @@ struct ScenePictures {
   /// (if any), and after the filter of the observer.
   std::vector<SceneStage> stages;
   cv::Mat1f frame;                         ///< whole frame of the camera as displayed, after the stages
-  std::optional<double> judged_gain;       ///< gain of the stages, by which their picture is divided
+  std::optional<double> judged_gain;       ///< gain of the stages; the picture after the stages is divided by the gain
   double grey_low_k = 0, grey_high_k = 1;  ///< black and white of every picture, above the background
   double background_k = 300;               ///< camera reading of the background: scene, air and one conversion
   double transmittance = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Frame of a scene after processing stages, in units of its contrast before them.
+// Frame of a scene after processing stages, in units of the contrast of the scene before the stages.
 #pragma once
 
 #include <functional>

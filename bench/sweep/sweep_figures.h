@@ -26,10 +26,10 @@ struct ResponseGrid {
   std::size_t points = 0, least = 0;
 };
 /// Computes the grid of the two parameters of [grid] with the largest shares of the variance, each with two numbers or
-/// more. Without [grid], two drawn parameters are used, with means over equal squares. The number of squares is between
-/// 8 x 8 and 3 x 3. It is the largest number with at least eight draws in each square and a range of the means of at
-/// least eight times their largest standard error. Errors: `not_identifiable` (no such parameters, cells without a
-/// task, or too few draws).
+/// more. Without [grid], two drawn parameters are used, with means over equal squares. The number of squares is the
+/// largest from 3 x 3 to 8 x 8 with at least eight draws in each square, and with means that span at least eight times
+/// the largest standard error of a mean. Errors: `not_identifiable` (no such parameters, cells without a task, or too
+/// few draws).
 [[nodiscard]] Result<ResponseGrid> response_grid(const Sweep& sweep, const SweepTable& table,
                                                  const ResponseEffects& effects);
 /// Contour line of a bilinear surface through the grid at one height, as straight segments from edge to edge of a cell

@@ -56,7 +56,7 @@ struct SweepFile {
   std::uint64_t sample_seed = 1;
   /// Only for a Sobol sample. If true, every draw consists of two independent points A and B, and a further point for
   /// each range. This point is a copy of A in which the parameter of the range has the value of B. With R ranges there
-  /// are sample_count x (R + 2) combinations. Total indices (Saltelli et al. 2010) are computed from them.
+  /// are sample_count x (R + 2) combinations, from which the total indices (Saltelli et al. 2010) are computed.
   bool sample_total = false;
   std::size_t repeats = 1;
   std::vector<Constraint> where;

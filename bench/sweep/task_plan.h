@@ -21,8 +21,8 @@ struct RunnableSweep {
   std::vector<SweepParameter> base;  ///< parameters of [base], except the plan
 };
 /// Loads a sweep. A sweep can set the keys of a plan, by path ("simulation.accuracy") or by the option of `todbench
-/// simulate` ("delta_t_k", "observer", "sensor"), and the keys of a sensor ("netd_k"). In [base] it can also set "plan"
-/// to a name or a file. Without a plan there is no unit under test, and the distance of the plates is chosen for each
+/// simulate` ("delta_t_k", "observer", "sensor"), and the keys of a sensor ("netd_k"). [base] can also set "plan" to a
+/// name or a file. Without a plan there is no unit under test, and the distance of the plates is chosen for each
 /// sensor. This function checks all values of all keys. Errors: `invalid_input`.
 [[nodiscard]] Result<RunnableSweep> load_sweep(const std::filesystem::path& file);
 

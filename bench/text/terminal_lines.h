@@ -14,7 +14,7 @@ namespace todbench {
 [[nodiscard]] std::size_t columns_of(std::string_view text);
 
 /// Breaks a line at blanks into lines of at most `columns`. Continuation lines are indented to the text after the last
-/// gap of at least two blanks in the first half of the columns. Without a gap, they have the indentation of the line.
+/// gap of at least two blanks in the first half of the columns, or without a gap like the line itself.
 /// Longer words are not broken. A line that fits keeps its blanks.
 [[nodiscard]] std::vector<std::string> broken_line(std::string_view line, std::size_t columns);
 

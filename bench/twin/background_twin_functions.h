@@ -15,8 +15,8 @@ namespace todbench {
 /// `curve` whose effective contrast is within 2 % of the set contrast.
 [[nodiscard]] TodCurve known_functions(const std::map<double, ProportionTable>& tables, const TodCurve& curve);
 
-/// Computation of the functions with 4000 draws per size and contrast. It uses the processor time that is free while
-/// the camera waits for its target and frames. The fit only stretches a function, so the function at the set contrast
+/// Computation of the functions with 4000 draws per size and contrast. Uses the processor time that is free while the
+/// camera waits for its target and frames. The fit only stretches a function, so the function at the set contrast
 /// can also be used for a slightly different effective contrast.
 class BackgroundTwinFunctions {
  public:

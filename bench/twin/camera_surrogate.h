@@ -32,10 +32,10 @@ class CameraSurrogate {
 
   /// Returns the responses by which contrasts are divided.
   [[nodiscard]] const std::map<std::string, double>& responses() const { return responses_; }
-  /// Returns the inputs with the surrogate in place of the twin. Empty if the frames of the camera agree with the twin;
-  /// the function of the twin then remains in use. Noise counts as different if the difference is significant in a t
-  /// test at 1 % and would change a threshold by more than 0.05 %. These limits are 5 % for NETD, and 3 % of the
-  /// variance of a pixel for rows, columns and fixed pattern.
+  /// Returns the inputs with the surrogate in place of the twin. Empty if the frames of the camera agree with the twin,
+  /// or if the surrogate is not a valid sensor; the function of the twin then remains in use. Noise counts as different
+  /// if the difference is significant at 1 % (normal distribution) and would change a threshold by more than 0.05 %:
+  /// 5 % of the NETD, or 3 % of the variance of a pixel for rows, columns and fixed pattern.
   [[nodiscard]] std::optional<ExperimentInputs> lent() const;
   /// Returns whether the pictures of the camera contradict the optical model of the twin for all its parameters, or
   /// whether no valid sensor has the estimated optics.
@@ -48,7 +48,7 @@ class CameraSurrogate {
   [[nodiscard]] std::optional<CameraHalo> halo() const;
   /// Returns whether the frames do not confirm the function and the response: refused(), unseen() or a halo().
   [[nodiscard]] bool unconfirmed() const { return refused() || unseen() || halo(); }
-  /// Returns ln (estimated response / response of the twin) for the plate with the largest magnitude; at least the
+  /// Returns the largest magnitude of ln (estimated response / response of the twin) over the plates; at least the
   /// share of halo().
   [[nodiscard]] double response_shift() const;
   /// Returns the record of the estimate; empty if no set-up could be evaluated.

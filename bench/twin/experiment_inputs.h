@@ -51,7 +51,7 @@ struct ExperimentInputs {
 /// simulated scene, which has no air. Errors: those of bench_transmittance().
 [[nodiscard]] Result<std::optional<double>> stated_air(const Plan& plan, const SensorSpec& sensor);
 
-/// Sets the kind of answers by chosen_answers(); without this call they are binary.
+/// Sets the kind of answers by chosen_answers(); without this call the answers are binary.
 void take_answers(MeasurementOptions& options, const Plan& plan, const ExperimentInputs& inputs);
 
 /// Returns the options for the simulated sensor: the camera's options without settling and corrections.

@@ -51,7 +51,7 @@ void keep_noise(const MeasurementResult& result, TodCurve& curve);
 /// Returns the name of the observer in results.
 [[nodiscard]] std::string observer_name(const Plan& plan, const ExperimentInputs& inputs);
 
-/// Returns the command, the output of its version command (10 s at most), and hashes of the files it names.
+/// Returns the command, the output of its version command (10 s at most), and hashes of the files that it names.
 [[nodiscard]] ModuleRecord module_record(const ModulePlan& module);
 /// Returns the record as text.
 [[nodiscard]] std::string text_of(const ModuleRecord& record);

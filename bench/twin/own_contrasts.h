@@ -20,9 +20,9 @@ namespace todbench {
 [[nodiscard]] Result<ContrastSurface> contrast_surface(const Plan& plan, const ExperimentInputs& inputs,
                                                        std::stop_token stop);
 
-/// Returns the answers converted to their set contrasts: contrast c replaces c', and the size is S exp(g(c) - g(c')),
-/// where g is the ln S75 of the surface. The set contrast is the contrast that the camera observes through the stated
-/// air.
+/// Returns the answers converted to their set contrasts: the set contrast c replaces the observed contrast c', and the
+/// size S becomes S exp(g(c) - g(c')). g is the ln S75 of the surface, and c the set contrast that the camera observes
+/// through the stated air.
 [[nodiscard]] std::vector<Trial> at_set_contrasts(std::span<const Trial> trials, const ContrastSurface& surface,
                                                   double air_transmittance);
 
@@ -47,7 +47,7 @@ struct RampOutcome {
 struct LostContrasts {
   int shown = 0, lost = 0;
 };
-/// Counts gaps between successive presentations of a set-up that are wider than two and a half steps of the ramp.
+/// Counts gaps between successive presentations of a set-up above 2.5 `ln_step`, a step of the ramp in ln contrast.
 [[nodiscard]] LostContrasts lost_contrasts(std::span<const Presentation> presentations, double ln_step);
 
 }  // namespace todbench

@@ -31,7 +31,7 @@ struct PairedCamera {
   /// Fit with the functions of the twin, if `curve` is fitted with the functions of the camera's surrogate. Null:
   /// `curve` is fitted with the functions of the twin.
   const TodCurve* by_twin = nullptr;
-  /// By set contrast: standard uncertainty of ln S75 of a camera whose pictures contradict its model; null: none.
+  /// By set contrast: standard uncertainty of ln S75 of a camera whose pictures do not confirm its model; null: none.
   const std::map<double, double>* model_u = nullptr;
   /// Trials as they were fitted, at the set contrasts, if these differ from the shown contrasts. Empty: `trials`.
   std::span<const Trial> fitted{};

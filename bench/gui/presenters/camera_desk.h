@@ -35,8 +35,8 @@ struct ControlReading {
 /// Returns a reading for each control. A feature that cannot be read is treated as absent.
 [[nodiscard]] std::vector<ControlReading> read_controls(FrameSource& camera);
 
-/// Sets a feature and reads it back. If a camera rejects the change while it streams, stops it, sets the feature and
-/// starts it again. Errors: those of FrameSource::set(), after which the camera streams again; `disconnected`.
+/// Sets a feature and reads it back. If a camera rejects the change while streaming, stops the camera, sets the feature
+/// and starts the camera. Errors: those of FrameSource::set(), after which the camera streams again; `disconnected`.
 [[nodiscard]] Result<std::string> change_feature(FrameSource& camera, const std::string& feature,
                                                  const std::string& value);
 

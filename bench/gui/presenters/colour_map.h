@@ -28,7 +28,7 @@ struct LevelSpan {
 };
 
 /// Returns the range from the 0.05 % to the 99.95 % quantile. This range ignores a few bad pixels and contains the
-/// triangles of a plate. The range is at least `least_span` wide, so that noise alone does not fill the map.
+/// triangles of a plate. Its width is at least `least_span` counts, so that noise alone does not fill the map.
 [[nodiscard]] LevelSpan automatic_level(const cv::Mat1w& counts, double least_span);
 
 /// Marks over a picture.

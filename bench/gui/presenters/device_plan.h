@@ -8,8 +8,8 @@
 
 namespace todbench {
 
-/// Returns the plan for a connected camera, without the values of other cameras. No such value then reaches the report
-/// of a real unit. Removes:
+/// Returns the plan for a connected camera, without the values of other cameras. The report of a real unit thus
+/// contains no value of another camera. Removes:
 /// - values of the plans `demo` and `acceptance` and of the emulated laboratory: texts, operator, addresses, times of
 ///   changes, limits, rows of the budget, and the IFOV of their camera;
 /// - IFOV, unit and settings of a different camera.

@@ -9,7 +9,7 @@
 
 namespace todbench {
 
-/// Writes `document` into `text`, which must be empty and whose layout paints figures with `drawings`. Both are used
+/// Writes `document` into `text`, which must be empty and whose layout paints figures with `drawings`. All are used
 /// only during the call.
 void write_text(QTextDocument& text, DrawingTextObject& drawings, const Document& document);
 

@@ -14,7 +14,7 @@
 
 namespace todbench {
 
-/// Thread for jobs. start() stops the running job and discards waiting jobs. It starts the new job when the running job
+/// Thread for jobs. start() stops the running job and discards waiting jobs; the new job starts when the running job
 /// has ended. queue() adds a job that starts after all others. Methods are called from the thread that owns the object
 /// and return immediately; jobs run on the thread of the runner.
 class JobRunner final : public QObject {

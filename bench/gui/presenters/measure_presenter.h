@@ -155,7 +155,7 @@ class MeasurePresenter final : public QObject {
   std::optional<OperatorRequest> request_;
   QStringList notes_;
   std::size_t done_ = 0, planned_ = 0, done_at_start_ = 0;
-  std::size_t presented_ = 0;  ///< presentations in the last part that counts them
+  std::size_t presented_ = 0;  ///< presentations in the last phase that counts presentations
   QElapsedTimer in_phase_, since_fit_, since_begin_;
   std::size_t requests_ = 0, planned_requests_ = 0;  ///< requests to the operator; 0 planned: unknown
   std::filesystem::path folder_;

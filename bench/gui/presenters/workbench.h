@@ -76,7 +76,7 @@ class Workbench final : public QObject {
   /// when its devices are ready. If it returns an error other than `interrupted`, trouble() is emitted.
   using DeviceJob = std::function<Result<void>(const Plan&, std::stop_token)>;
   void run(Activity activity, DeviceJob job);
-  /// Runs a job without devices in the same way, with the unchanged plan.
+  /// Runs a job without devices, as run() does, with the unchanged plan.
   void run_without_devices(Activity activity, DeviceJob job);
   /// Stops the running job.
   void stop();
