@@ -30,15 +30,15 @@ enum class PacketResend {
 /// Options of aravis_backend().
 struct AravisOptions {
   AravisTransport transport = AravisTransport::gige_vision;
-  /// PFNC name. Empty: the unpacked monochrome format with the most significant bits; Mono14 is preferred to Mono16 if
-  /// both have the same number of significant bits.
+  /// PFNC name (GenICam Pixel Format Naming Convention). Empty: the unpacked monochrome format with the most
+  /// significant bits; Mono14 is preferred to Mono16 if both have the same number of significant bits.
   std::string pixel_format = {};
   PacketResend packet_resend = PacketResend::automatic;
   /// GigE packet size including IP and UDP headers. 0: 8000 on loopback, otherwise the size that the camera states. The
   /// size is tested once when a stream is created, and negotiated only if the test packet does not arrive.
   int packet_size_bytes = 0;
-  /// Smallest receive buffer of the socket. Cameras send whole frames in one burst, so at least eight payloads are
-  /// always requested.
+  /// Minimum size of the socket's receive buffer. Cameras send whole frames in one burst, so a size of at least eight
+  /// payloads is always requested.
   std::uint64_t min_socket_buffer_bytes = 4U << 20U;
   /// Time limit for reading the description of a GigE camera. The description is read twice.
   std::chrono::milliseconds description_patience{30'000};
@@ -48,10 +48,10 @@ struct AravisOptions {
 
 /// Lists cameras by discovery (1 s on a network). Opens "gige:VENDOR-SERIAL", or "gige:192.168.1.10" on a network that
 /// blocks broadcasts; info().id of the source is "gige:VENDOR-SERIAL" in both cases. Opening applies the settings of
-/// the camera's family (linear temperature, full depth, filters off; camera_families.h), checks its test ramp if it has
-/// one, and reads everything back. The first commanded non-uniformity correction also switches automatic corrections
-/// off. Errors of opening: `not_found` (absent; busy, because a different program controls it or crashed within the
-/// heartbeat of about 3 s; no monochrome format of 10 ... 16 bits; description not safe to evaluate, see
+/// the camera's family (linear temperature, full depth, filters off; camera_families.h), checks the camera's test ramp,
+/// if any, and reads all settings back. The first commanded non-uniformity correction also switches automatic
+/// corrections off. Errors of opening: `not_found` (absent; busy, because a different program controls it or crashed
+/// within the heartbeat of about 3 s; no monochrome format of 10 ... 16 bits; description not safe to evaluate, see
 /// description_guard.h), `interrupted`.
 ///
 /// stop() of a source returns within milliseconds if the camera answers and within 0.4 s if it has vanished. A get or

@@ -19,7 +19,7 @@ struct FeatureChoice {
 /// Settings under which a camera's counts are proportional to temperature.
 struct LinearMode {
   std::string mode, mode_entry;  ///< enumeration and the entry that makes counts linear
-  std::string step, step_entry;  ///< enumeration and the entry that selects the step; may be the same feature
+  std::string step, step_entry;  ///< enumeration and entry that select kelvin_per_count; `step` may equal `mode`
   double kelvin_per_count = 0;
 };
 

@@ -34,15 +34,15 @@ struct StreamFormat {
 [[nodiscard]] Result<std::vector<std::string>> prepare_camera(ArvCamera* camera, const CameraFamily& family,
                                                               const std::string& wanted);
 
-/// Reads geometry, format and payload as the camera reports them now. The limits are 16384 x 16384 pixels and 64 MiB,
-/// because memory is allocated by these unverified numbers.
+/// Reads the present geometry, format and payload. Errors: `not_found` (impossible, or above 16384 x 16384 pixels or 64
+/// MiB, because memory is allocated by these unverified numbers; unknown pixel format), `disconnected`.
 [[nodiscard]] Result<StreamFormat> read_stream_format(ArvCamera* camera);
 
 /// Reads the scale of the camera's present settings; uncalibrated if the settings contain no scale. IRFormat (FLIR A3xx
 /// ... A700): 0.01 or 0.1 K per count, or the radiometric formula with R, B, F, J0, J1 at unit emissivity and
-/// transmission: T = B / ln(R J1 / (S - J0) + F). TemperatureLinearMode (FLIR Ax5): 0.04 or 0.4 K per count, or the
-/// formula with R, B, F, O. Float features TemperatureLinearScale (K per count) and TemperatureLinearOffset (K) take
-/// precedence over the names.
+/// transmission: T = B / ln(R J1 / (S - J0) + F), T in kelvin, S in counts. TemperatureLinearMode (FLIR Ax5): 0.04 or
+/// 0.4 K per count, or the formula with R, B, F, O. Float features TemperatureLinearScale (K per count) and
+/// TemperatureLinearOffset (K) take precedence over the names.
 [[nodiscard]] RadiometricScale read_scale(ArvDevice* device, const CameraFamily& family);
 
 /// Returns the frame rate in Hz; 0 if the camera does not report it.
@@ -57,7 +57,7 @@ struct StreamFormat {
 [[nodiscard]] std::vector<std::string> nonuniformity_commands(ArvDevice* device, const CameraFamily& family);
 
 /// Disables automatic corrections. The camera then corrects only on command. Returns a warning if the camera cannot
-/// disable them. Errors: `disconnected`.
+/// disable automatic corrections. Errors: `disconnected`.
 [[nodiscard]] Result<std::optional<std::string>> take_over_corrections(ArvDevice* device, const CameraFamily& family);
 
 }  // namespace todbench

@@ -32,7 +32,7 @@ struct DescriptionReading {
 [[nodiscard]] Result<std::optional<std::string>> read_safe_description(const std::string& ipv4,
                                                                        const DescriptionReading& reading);
 
-/// Does the same for a USB3 Vision camera: reads the description through the manifest in the camera's registers. Empty
+/// Reads the description of a USB3 Vision camera through the manifest in its registers. Errors as for GigE. Empty
 /// if no camera has these names or a different program uses the camera.
 [[nodiscard]] Result<std::optional<std::string>> read_safe_description(const UsbNames& names,
                                                                        const DescriptionReading& reading);

@@ -20,7 +20,7 @@ namespace todbench {
 /// checked before anything is sent. Errors: `invalid_input` with the permitted values, `disconnected`.
 [[nodiscard]] Result<void> set_feature(ArvDevice* device, const std::string& name, const std::string& value);
 
-/// Returns the value of a numeric feature; `invalid_input` if it is not a number.
+/// Returns the value of a numeric feature. Errors as get_feature(), and `invalid_input` if the value is not a number.
 [[nodiscard]] Result<double> get_number(ArvDevice* device, const std::string& name);
 
 /// Returns the entries of an enumeration that are available now; empty if there is no such enumeration.

@@ -46,7 +46,7 @@ class GErrorSlot {
            (error_->code == ARV_DEVICE_ERROR_TIMEOUT || error_->code == ARV_DEVICE_ERROR_NOT_CONNECTED ||
             error_->code == ARV_DEVICE_ERROR_TRANSFER_ERROR);
   }
-  /// Returns an error with code `disconnected` if the device did not answer, otherwise with code `refused`.
+  /// Returns the error "DOING: message" with code `disconnected` if the device did not answer, otherwise `refused`.
   [[nodiscard]] tl::unexpected<Error> failure(ErrorCode refused, const std::string& doing) const {
     return fail(lost() ? ErrorCode::disconnected : refused, doing + ": " + message());
   }

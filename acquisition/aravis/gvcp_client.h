@@ -28,7 +28,7 @@ inline constexpr std::uint32_t gvcp_control_privilege_register = gev::control_pr
 [[nodiscard]] Result<std::uint32_t> gvcp_read_register(const std::string& ipv4, std::uint32_t address,
                                                        std::chrono::milliseconds patience);
 
-/// Reads a text of at most `bytes` (a multiple of 4, up to 536) from the device's memory, in the same way.
+/// Reads a text of at most `bytes` (a multiple of 4, up to 536) from the memory. Errors as gvcp_read_register().
 [[nodiscard]] Result<std::string> gvcp_read_text(const std::string& ipv4, std::uint32_t address, std::uint16_t bytes,
                                                  std::chrono::milliseconds patience);
 
@@ -39,8 +39,8 @@ struct GvcpReading {
   std::function<void(std::uint64_t bytes)> on_bytes = {};  ///< bytes read so far; called on the reading thread
 };
 
-/// Reads `bytes` of the device's memory, 512 at a time, from an address that is a multiple of 4. Errors: as above, but
-/// `not_found` with the progress if `patience` expires; `interrupted`.
+/// Reads `bytes` of the device's memory, 512 at a time, from an address that is a multiple of 4. Errors: as
+/// gvcp_read_register(), but `not_found` with the progress if `patience` expires; `interrupted`.
 [[nodiscard]] Result<std::string> gvcp_read_memory(const std::string& ipv4, std::uint32_t address, std::uint32_t bytes,
                                                    const GvcpReading& reading);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Object parameters of radiometric cameras (emissivity, distance, ...): they change the temperatures that the counts
-// represent. Data and pure functions; no camera library.
+// Object parameters of radiometric cameras (emissivity, distance, ...): the parameters change the temperatures that the
+// counts represent. Data and pure functions; no camera library.
 #pragma once
 
 #include <map>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// USB3 Vision control messages that are needed before Aravis opens a camera. They read location, size and bytes of the
-// camera's description. Source: GenCP 1.1, sections 4.2 to 4.4; USB3 Vision 1.0, section 4.
+// USB3 Vision control messages that are needed before Aravis opens a camera. The messages read location, size and bytes
+// of the camera's description. Source: GenCP 1.1, sections 4.2 to 4.4; USB3 Vision 1.0, section 4.
 #pragma once
 
 #include <chrono>

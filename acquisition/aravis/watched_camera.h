@@ -18,7 +18,7 @@ namespace todbench {
 /// Owner of an Aravis camera.
 class WatchedCamera {
  public:
-  /// `on_lost` is called on a thread of Aravis. It must not wait for the thread that destroys this object.
+  /// `on_lost` is called on a thread of Aravis. `on_lost` must not wait for the thread that destroys this object.
   WatchedCamera(GObjectPtr<ArvCamera> camera, std::function<void()> on_lost);
   /// Destroys camera and device on this thread, after every emission of "control-lost" has ended and every other
   /// reference to the device has been released. Destroy streams first. Takes five seconds if the camera does not

@@ -15,11 +15,11 @@ struct Accuracy {
   double band_tolerance = 1e-4;    ///< signal above the highest computed frequency, relative to the contrast
   int wavelengths = 16;            ///< Gauss-Legendre nodes over the band
   int phases_per_axis = 8;         ///< sampling phases averaged by the direct estimate, per pitch and axis
-  int noise_draws = 600;           ///< draws of the direct estimate per size, shared by phases and contrasts
+  int noise_draws = 600;           ///< draws of the direct estimate per target size, for all phases and contrasts
   double standard_error_percent = 0;  ///< the direct estimate adds draws until it has this standard error; 0: no target
   bool operator==(const Accuracy&) const = default;
 
-  /// Upper limit of the draws per size: 40 MB of projected noise per size.
+  /// Upper limit of the draws per target size; the projected noise then occupies 40 MB.
   static constexpr int max_noise_draws = 8000;
 
   /// Derives all tolerances from the acuity tolerance. The standard error is half of the acuity tolerance; the other
@@ -28,7 +28,7 @@ struct Accuracy {
   [[nodiscard]] static Accuracy draft();
   [[nodiscard]] static Accuracy normal();
   [[nodiscard]] static Accuracy reference();
-  /// Returns a level by name: "draft", "normal", "reference", or "auto" (for_tolerance() of the default tolerance).
+  /// Returns a level by name: "draft", "normal", "reference", or "auto" (for_tolerance(1), the default tolerance).
   /// Error: `invalid_input` for any other name.
   [[nodiscard]] static Result<Accuracy> named(std::string_view level);
 };

@@ -12,7 +12,7 @@ namespace todbench {
 /// The work must therefore end within seconds, because it receives no stop request. Any thread.
 void start_in_background(std::function<void()> work);
 
-/// Does the same for work that can be moved but not copied. The work is destroyed on its thread after it has run.
+/// Like start_in_background(), but for move-only work. The work is destroyed on its thread after it has run.
 template <typename Work>
 void finish_in_background(Work work) {
   start_in_background([held = std::make_shared<Work>(std::move(work))]() mutable {

@@ -19,7 +19,7 @@ enum class ErrorCode {
   integrity,         ///< too many frames unusable
   timeout,           ///< no answer in time; the device may still be there
   calibration,       ///< calibration missing, invalid or contradicted by the measurement
-  not_identifiable,  ///< the data cannot answer the question
+  not_identifiable,  ///< the data do not determine the requested quantity
   io,                ///< file or disk
   interrupted,       ///< stopped on request
   internal,          ///< a bug of the program

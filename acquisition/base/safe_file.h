@@ -20,7 +20,7 @@ struct NewFile {
 /// Creates an empty file with a random hidden name (".NAME.XXXXXXXXXXXXXXXX.part") in the folder of `file`. An existing
 /// file is never opened. Error: `io` with the path of `file` and the reason.
 [[nodiscard]] Result<NewFile> make_file_beside(const std::filesystem::path& file, mode_t mode = 0666);
-/// Returns whether a file name has the form of make_file_beside(). A killed program leaves these files behind.
+/// Returns whether make_file_beside() creates names of this form. A killed program leaves files with these names.
 [[nodiscard]] bool is_name_of_a_part(const std::filesystem::path& file);
 
 /// Creates an empty file of this name for reading and writing. An existing file or link is replaced; the target of a

@@ -29,8 +29,8 @@ struct CorrectionWatchOptions {
   /// Level jump, in units of the median difference of successive frames (1.01 standard deviations for white noise).
   double level_jump = 2;
   /// Ratio of the difference of two frames to the median difference. A change of the fixed pattern by f standard
-  /// deviations of temporal noise gives sqrt(1 + f^2 / 2): 1.3 detects f = 1.2. White noise scatters by 1.2 % (5000
-  /// pixels). If the noise is below 1.5 counts, changes below 2 counts are not detected.
+  /// deviations of temporal noise gives sqrt(1 + f^2 / 2): 1.3 detects f = 1.2. With white noise and 5000 pixels, the
+  /// ratio scatters by 1.2 %. If the noise is below 1.5 counts, changes below 2 counts are not detected.
   double pattern_ratio = 1.3;
   /// A picture is without structure if its range (1st to 99th percentile) is below this share of the largest observed
   /// range.
@@ -50,7 +50,7 @@ class CorrectionWatch {
   /// Returns the evidence of a correction in this frame, if any. The frame must be complete and show the same scene as
   /// the preceding frame.
   [[nodiscard]] std::optional<CorrectionSign> see(const Frame& frame);
-  /// Does the same for a frame that is bit-identical to the preceding frame.
+  /// Returns the evidence of a correction, if any, for a frame that is bit-identical to the preceding frame.
   [[nodiscard]] std::optional<CorrectionSign> see_frozen();
   /// Announces a change of the scene: the next frame is not compared.
   void scene_changed();
@@ -59,7 +59,7 @@ class CorrectionWatch {
   void remember(double spread, double range);
 
   CorrectionWatchOptions options_;
-  std::vector<std::uint16_t> previous_;  ///< sampled sampled pixels of the preceding frame; empty: no frame
+  std::vector<std::uint16_t> previous_;  ///< sampled pixels of the preceding frame; empty: no frame
   std::deque<double> differences_;       ///< trimmed mean differences of successive frames
   std::optional<double> usual_range_;    ///< largest range observed in this scene
   int equal_frames_ = 1;

@@ -6,8 +6,8 @@
 
 namespace todbench {
 
-/// Measures the greatest common divisor of the changes of pixels between successive frames. It is 1 for most cameras.
-/// It is larger if a camera or a converter fills the low bits of the counts with zeros.
+/// Measures the greatest common divisor of the changes of pixels between successive frames. The divisor is 1 for most
+/// cameras. It is larger if a camera or a converter fills the low bits of the counts with zeros.
 class CountStep {
  public:
   /// Compares a frame with the previous frame. The first frame, and a frame of a different size, are only stored.

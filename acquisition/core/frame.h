@@ -48,7 +48,7 @@ struct Frame {
   FrameStatus status = FrameStatus::complete;
   Numbering numbering = Numbering::counted;
   CorrectionState correction = CorrectionState::unknown;  ///< state while this frame was exposed
-  double since_correction_s = -1;                         ///< as reported by the camera; negative: not reported
+  double since_correction_s = -1;                         ///< time since the last correction; negative: not reported
   int significant_bits = 16;                              ///< the full scale is 2^significant_bits - 1 counts
   std::shared_ptr<const RadiometricScale> scale;          ///< never null
   std::shared_ptr<const JudgedPicture> judged{};  ///< picture that is judged instead of the counts; null: the counts

@@ -52,9 +52,9 @@ class FrameSequence {
 
   /// Returns the position of a frame in the sequence. A frame without a number gets the position after the last frame;
   /// its true position is the same or later. 16-bit numbers are unwrapped over gaps of up to 32767 frames (ten minutes
-  /// at 50 Hz). A frame that is older according to its number and the camera's clock gets its older position. A counted
-  /// gap before a frame with `after_unread` is `unread`. A gap before the next frame is also `unread`, because a frame
-  /// may have been in transfer when the buffers were full.
+  /// at 50 Hz). A frame that is older than the last frame, by its number and by the camera's clock, gets its older
+  /// position. A counted gap before a frame with `after_unread` is `unread`. A gap before the next frame is also
+  /// `unread`, because a frame may have been in transfer when the buffers were full.
   [[nodiscard]] FramePlace next(const FrameStamp& as_told);
 
  private:
@@ -68,8 +68,8 @@ class FrameSequence {
     std::optional<double> device, host;
     double period_ns = 0;  ///< frame period on the host's clock
     /// Returns the number of periods from which to estimate a gap after a restart. The number is that of the camera's
-    /// clock. If the host's clock counts far more periods, the camera's clock has also restarted, and the number is
-    /// that of the host's clock.
+    /// clock. If the host's clock counts far more periods than the camera's clock, the camera's clock has also
+    /// restarted; the number is then that of the host's clock.
     [[nodiscard]] std::optional<double> best() const;
   };
   /// Frame period on the camera's clock: the median of the observed periods.

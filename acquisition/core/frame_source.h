@@ -28,7 +28,7 @@ struct SourceInfo {
   std::vector<std::string> warnings;  ///< one sentence each, e.g. if the system did not grant the socket buffer
 };
 
-/// A source of frames in order of exposure. It is created stopped. One thread at a time, except stop(), which any
+/// A source of frames in order of exposure. A new source is stopped. One thread at a time, except stop(), which any
 /// thread may call. After an error `disconnected` the source is unusable: destroy it and open a new source.
 class FrameSource {
  public:

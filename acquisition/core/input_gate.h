@@ -21,7 +21,7 @@ namespace todbench {
                                          std::span<const Rejection> damages);
 
 /// Judges every frame of a recording of a static scene in order. The caller judges repeated frames, gaps and saturated
-/// pixels, because it knows their effect on the result.
+/// pixels, because it can determine their effect on the result.
 class InputGate {
  public:
   /// Returns true if the frame is a valid exposure: a new exposure or a repetition of the previous exposure.

@@ -58,10 +58,10 @@ class IntegrityGate {
   explicit IntegrityGate(IntegrityOptions options);
   /// Returns the first reason to reject the frame; empty if it may be measured. Counts the frame in both cases.
   [[nodiscard]] std::optional<Rejection> judge(const Frame& frame);
-  /// Revokes the acceptance of the last frame for a reason that only the caller knows (time since a correction).
+  /// Revokes the acceptance of the last frame for a reason that only the caller detects (time since a correction).
   void reject_accepted(Rejection reason);
   /// Counts the frame that judge() has just rejected under the reason `to` instead of `from`. Use it for a reason that
-  /// only the caller knows.
+  /// only the caller detects.
   void recount(Rejection from, Rejection to);
 
   [[nodiscard]] std::uint64_t accepted() const { return accepted_; }

@@ -10,13 +10,13 @@
 
 namespace todbench {
 
-/// The output of the stages for a frame, with its own scale. It is judged instead of the counts of the frame.
+/// The output of the processing stages for a frame, with a separate scale; judged instead of the counts of the frame.
 struct JudgedPicture {
   cv::Mat1w counts;
   int samples_per_pixel = 1;      ///< along each axis
   cv::Point2d first_px = {0, 0};  ///< position of sample (0, 0), in pixels of the frame
-  cv::Mat1b cut_off{};  ///< not 0: the output of the stages was outside the range of counts; empty: no such pixel
-  std::optional<cv::Point2d> scan_px{};  ///< displacement of the frame that a stage assumes; empty: none
+  cv::Mat1b cut_off{};            ///< not 0: the output of the stages was outside the range of counts; empty: nowhere
+  std::optional<cv::Point2d> scan_px{};  ///< displacement of the frame assumed by a stage; empty: none
   std::optional<Error> none{};           ///< reason why this frame has no picture and must not be judged
 };
 

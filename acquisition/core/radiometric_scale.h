@@ -30,7 +30,7 @@ struct TableScale {
   bool operator==(const TableScale&) const = default;
 };
 
-/// The Planck-like formula that camera makers publish: T = B / ln(R / (S - O) + F), S in counts.
+/// The Planck-like formula that camera makers publish: T = B / ln(R / (S - O) + F), T in kelvin, S in counts.
 struct PlanckScale {
   double r = 0, b = 0, f = 1, o = 0;
   bool operator==(const PlanckScale&) const = default;
@@ -51,9 +51,9 @@ class RadiometricScale {
   [[nodiscard]] std::optional<double> kelvin(double counts) const;
   /// Returns the scale as a straight line, for loops over whole frames; null if it is not linear.
   [[nodiscard]] const LinearScale* straight_line() const { return std::get_if<LinearScale>(&scale_); }
-  /// Returns the counts (not rounded) of a temperature: the inverse of kelvin().
+  /// Returns the counts (not rounded) of a temperature: the inverse of kelvin(); empty outside the scale.
   [[nodiscard]] std::optional<double> counts(double temperature_k) const;
-  /// Returns the slope in kelvin per count at `counts`.
+  /// Returns the slope in kelvin per count at `counts`; empty outside the scale.
   [[nodiscard]] std::optional<double> kelvin_per_count(double counts) const;
   /// Returns a text for reports: "0.01 K/count", "table of 7 points", ...
   [[nodiscard]] std::string describe() const;

@@ -16,11 +16,11 @@ class RepeatCadence {
   void see(bool equals_the_last);
   /// Returns the frames per exposure; 1 while the number is unknown.
   [[nodiscard]] int times() const { return times_; }
-  /// Returns whether the last frame agrees with this pattern: its exposure was not sent more often than other
+  /// Returns whether the last frame agrees with the regular pattern: its exposure was not sent more often than other
   /// exposures.
   [[nodiscard]] bool in_rhythm() const { return times_ > 1 && run_ <= times_; }
-  /// Returns the number of frames in this pattern that equal the preceding frame, including the frames from which the
-  /// pattern was determined.
+  /// Returns the number of frames in the regular pattern that equal the preceding frame, including the frames from
+  /// which the pattern was determined.
   [[nodiscard]] std::uint64_t repeats() const { return repeats_; }
   /// Returns one sentence for the user; empty if each exposure is sent once.
   [[nodiscard]] std::string sentence() const;

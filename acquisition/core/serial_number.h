@@ -7,8 +7,8 @@
 
 namespace todbench {
 
-/// Returns whether many units have this text as serial number. These texts are: an empty text, one repeated character,
-/// digits or letters in order, a word like "default", and a firmware date in January with a constant counter
+/// Returns whether many units have this text as serial number. The recognised texts are: an empty text, one repeated
+/// character, digits or letters in order, a word like "default", and a firmware date in January with a constant counter
 /// (200901010001 of UVC bridges). The probability that a genuine 8-digit counting serial number equals any of these
 /// texts is below 10^-6.
 [[nodiscard]] bool is_placeholder_serial(std::string_view serial);

@@ -6,7 +6,7 @@
 
 namespace todbench {
 
-/// Reason why the client must not evaluate a description or a feature of it.
+/// Reason why the client must not evaluate a description or one of its features.
 enum class DescriptionFaultKind {
   not_xml,          ///< not well-formed, or no RegisterDescription
   entities,         ///< has a document type, which may declare entities

@@ -34,7 +34,7 @@ enum class NodeKind {
 /// Kinds of references between nodes.
 enum class ReferenceKind {
   value,      ///< pValue, pValueIndexed, pValueDefault: the value and, unless stated otherwise, its bounds
-  part,       ///< pAddress, pIndex, pOffset, pVariable, pCommandValue: a part of the value
+  part,       ///< pAddress, pIndex, pOffset, pVariable, pCommandValue: a number from which the value is computed
   length,     ///< pLength: of a register
   bound,      ///< pMin, pMax, pInc
   condition,  ///< pIsImplemented, pIsAvailable, pIsLocked

@@ -22,7 +22,7 @@ class DescriptionRanges {
  public:
   explicit DescriptionRanges(const DescriptionNodes& nodes) : nodes_(nodes), found_(nodes.nodes.size()) {}
 
-  /// Returns the range of the values to which this name can refer.
+  /// Returns the range of the values of the node with this name; all integers if there is no such node.
   [[nodiscard]] IntegerRange range_of(const std::string& name);
   /// Returns whether a formula of the node can raise SIGFPE, which would end the program.
   [[nodiscard]] bool may_trap(const DescriptionNode& node);

@@ -73,7 +73,7 @@ enum class ByteOrder { little_endian, big_endian };
 [[nodiscard]] constexpr std::string_view to_string(PixelFormat format) {
   return facts_of(format).name;
 }
-/// Convert to and from the PFNC code.
+/// Convert to and from the PFNC code. pixel_format_of_pfnc() returns empty for a code that is not in the table.
 [[nodiscard]] constexpr std::uint32_t pfnc_code(PixelFormat format) {
   return facts_of(format).pfnc;
 }

@@ -17,7 +17,7 @@ struct KnownValues {
     assumed_unsigned,  ///< raw file; the user did not state the sign
     stated_unsigned,   ///< raw file, signed=no
     stated_signed,     ///< raw file, signed=yes
-    in_file,           ///< the file contains it
+    in_file,           ///< the file states the sign
   };
   Sign sign = Sign::in_file;
   bool counts_are_signed = false;  ///< the counts of the frames are the signed values plus 32768

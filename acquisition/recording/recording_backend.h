@@ -23,8 +23,8 @@ namespace todbench {
 /// Errors: `invalid_input` (key, number, damaged or short file), `not_found` (no such file), `io`.
 [[nodiscard]] Result<Recording> open_recording(const std::filesystem::path& path, const std::string& query);
 
-/// Returns the back end of scheme "file". Its list() is empty, because recordings are not discovered. It opens
-/// "file:PATH" and "file:PATH?QUERY" with open_recording().
+/// Returns the back end of scheme "file". Its list() is empty, because recordings are not discovered. The back end
+/// opens "file:PATH" and "file:PATH?QUERY" with open_recording().
 [[nodiscard]] std::unique_ptr<CameraBackend> recording_backend();
 
 }  // namespace todbench

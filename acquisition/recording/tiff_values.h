@@ -24,7 +24,7 @@ struct ValueCounts {
   /// Converts values. Error: `invalid_input` (a value that is not a number, is a fraction although the unit is counts,
   /// or is outside 0 ... 65535 counts).
   [[nodiscard]] Result<cv::Mat1w> counts(const cv::Mat& values) const;
-  /// Returns the scale of the counts. `of_values`: scale of the values in the file, if they have one.
+  /// Returns the scale of the counts. `of_values`: scale of the values. Errors as RadiometricScale::linear().
   [[nodiscard]] Result<RadiometricScale> scale(const RadiometricScale& of_values) const;
   /// Returns a text that describes the relation between values and counts, for provenance; empty if values and counts
   /// are equal.
@@ -33,9 +33,9 @@ struct ValueCounts {
 
 /// Determines the conversion for values of OpenCV's type `depth`. Unsigned values are counts. 32768 is added to signed
 /// values. Floating-point values in kelvin or degrees Celsius get the smallest step of the series 1, 2, 5, from 0.1 mK
-/// to 0.1 K, that covers their range; this requires reading every picture once. Errors: `invalid_input` (signed or
-/// floating-point values without a unit, a unit that does not fit, fractions stated as counts, a range above 6553 K),
-/// and the errors of `read`.
+/// to 0.1 K, that covers their range; this requires reading every picture once. `calibrated`: the user stated a scale.
+/// `pictures`: number of pictures. Errors: `invalid_input` (no unit, except for signed values with a scale; a unit that
+/// does not fit, fractions stated as counts, a range above 6553 K), those of `read`.
 [[nodiscard]] Result<ValueCounts> value_counts(int depth, std::optional<ValueUnit> unit, bool calibrated,
                                                std::uint64_t pictures,
                                                const std::function<Result<cv::Mat>(std::uint64_t)>& read);

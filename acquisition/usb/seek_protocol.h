@@ -103,7 +103,7 @@ class SeekDeadPixels {
   SeekDeadPixels() = default;  ///< none
   explicit SeekDeadPixels(const cv::Mat1w& calibration_picture);
   [[nodiscard]] std::size_t count() const { return dead_; }
-  /// Returns the depth of the deepest pixel inside a defect; 1 for a dead pixel with a live neighbour.
+  /// Returns the depth of the deepest pixel inside a defect, in pixels; 1 for a dead pixel with a live neighbour.
   [[nodiscard]] int depth() const { return depth_; }
   /// Checks the number of replaced pixels. Error: `calibration` if too many pixels are replaced. The limits are 10 % of
   /// the pixels and a defect depth of 2 pixels; a deeper defect hides a target of 4 pixels. By design a Compact omits

@@ -12,8 +12,8 @@ namespace todbench {
 /// descriptors, or from the chip if they have none. Counts are picture - shutter picture + 16384 with dead pixels
 /// filled (see seek_protocol.h). A user who calibrated the camera sets the features TemperatureLinearScale and
 /// TemperatureLinearOffset. Shutter frames are delivered as frames during a non-uniformity correction, which the
-/// integrity gate rejects. start() takes the time of a dozen frames, stop() takes milliseconds. An unplugged cable is
-/// reported as `disconnected` immediately. Error of opening: `not_found` (absent, busy, or access denied).
+/// integrity gate rejects. start() returns after about a dozen frames, stop() within milliseconds. An unplugged cable
+/// is reported as `disconnected` immediately. Error of opening: `not_found` (absent, busy, or access denied).
 [[nodiscard]] std::unique_ptr<CameraBackend> usb_backend();
 
 }  // namespace todbench

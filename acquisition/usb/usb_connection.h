@@ -19,7 +19,7 @@ namespace todbench {
 
 /// A libusb context, shared by all objects created from it, because libusb requires that the context is destroyed last.
 using UsbContext = std::shared_ptr<libusb_context>;
-/// Creates a context.
+/// Creates a context. Error: `io`.
 [[nodiscard]] Result<UsbContext> usb_context();
 
 struct UsbDeviceDeleter {
@@ -36,7 +36,7 @@ struct SeekOnBus {
   SeekModel model = SeekModel::compact;
   std::string address;  ///< "/dev/bus/usb/001/004"
 };
-/// Lists the Seek cameras on the bus.
+/// Lists the Seek cameras on the bus. Error: `io` (libusb cannot list the devices).
 [[nodiscard]] Result<std::vector<SeekOnBus>> seek_cameras(libusb_context* context);
 
 /// An opened camera with interface 0 claimed. Owns it and releases it on destruction. One thread at a time.
@@ -51,7 +51,7 @@ class UsbConnection {
   /// control().
   [[nodiscard]] Result<std::vector<std::uint8_t>> bulk_in(std::size_t bytes, std::chrono::milliseconds timeout);
 
-  /// Returns the serial number in the descriptors, or the chip's serial number in hexadecimal if they have none.
+  /// Returns the serial number of the descriptors or of the chip. Errors: `not_found` (none), those of control().
   [[nodiscard]] Result<std::string> serial_number();
   [[nodiscard]] Result<std::string> firmware();
   [[nodiscard]] libusb_device_handle* handle() const { return handle_.get(); }

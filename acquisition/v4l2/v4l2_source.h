@@ -75,8 +75,8 @@ class V4l2Source final : public FrameSource {
   /// may have no scale.
   [[nodiscard]] Result<void> learn_scale();
 
-  /// Runs the receiving thread. It fetches every frame immediately, so that the frame's host time is its time of
-  /// arrival and the driver always has a free buffer.
+  /// Runs the receiving thread. The thread fetches every frame immediately, so that the host time of the frame is its
+  /// time of arrival and the driver always has a free buffer.
   void receive(const std::stop_token& stop);
   void keep(const VideoBuffer& buffer);
   [[nodiscard]] bool device_has_gone();

@@ -57,7 +57,7 @@ class VideoDevice {
   [[nodiscard]] Result<VideoLayout> set_format(VideoLayout layout);
   /// Fails if the present format differs from the format of the layout.
   [[nodiscard]] Result<void> check_format(const VideoLayout& layout) const;
-  /// Returns the frame rate in Hz; 0 if the driver does not report it.
+  /// Returns the frame rate in Hz; 0: not reported. set_frame_rate(): 0.1 to 10 000 Hz, otherwise `invalid_input`.
   [[nodiscard]] double frame_rate_hz() const;
   [[nodiscard]] Result<void> set_frame_rate(double frame_rate_hz);
 
@@ -65,7 +65,7 @@ class VideoDevice {
   [[nodiscard]] Result<void> start(unsigned buffers);
   /// Stops and unmaps. No effect if stopped.
   void stop();
-  /// Passes the next filled buffer to `use` and queues it again. Returns false if no buffer is ready.
+  /// Passes the next filled buffer to `use` and queues it again; false if no buffer is ready. Error: `disconnected`.
   [[nodiscard]] Result<bool> take(const std::function<void(const VideoBuffer&)>& use);
 
   /// Calls ioctl() and repeats it when a signal interrupts it. Returns errno; 0 for success.

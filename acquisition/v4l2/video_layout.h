@@ -45,8 +45,8 @@ struct VideoLayout {
   cv::Rect picture;        ///< rows that contain counts
   int telemetry_rows = 0;  ///< telemetry rows of a Lepton below the picture
   /// Number of rows that do not belong to the picture, all above or all below it. If it is not 0, `picture` begins at
-  /// the first row that may belong to the picture. The position of these rows is determined in each frame, because they
-  /// differ more from neighbouring rows than rows of the picture do.
+  /// the first row that may belong to the picture. The position of the other rows is determined in each frame, because
+  /// these rows differ more from their neighbours than rows of the picture.
   int foreign_rows = 0;
   double kelvin_per_count = 0;  ///< 0: the family does not report it
 };

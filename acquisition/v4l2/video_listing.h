@@ -43,7 +43,7 @@ struct VideoListing {
   std::vector<VideoNode> nodes;
   std::vector<std::string> unreadable;  ///< one sentence each
 };
-/// Lists the nodes with the identity of their devices.
+/// Lists the nodes with the identity of their devices. Error: `io` (udev does not answer).
 [[nodiscard]] Result<VideoListing> list_video_nodes();
 
 /// Arrival or removal of a video device.
@@ -54,7 +54,7 @@ struct VideoEvent {
   std::string sys_path;  ///< distinguishes the device from a different device that gets the same node later
 };
 
-/// Arrivals and removals of video devices since its creation. One thread at a time.
+/// Arrivals and removals of video devices since its creation. One thread at a time. Error of create(): `io`.
 class VideoWatch {
  public:
   [[nodiscard]] static Result<VideoWatch> create();

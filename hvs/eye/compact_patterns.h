@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Detection of compact patterns by the eye. At contrast 1, d'^2 is the integral of |H F|^2, where F is the spectrum of
-// the pattern in square degrees. A compact pattern is so small that the eye sums over its whole area. For a Gabor
-// pattern, the area of summation is limited.
+// Detection of compact patterns by the eye. At contrast 1, d'^2 is the integral of |H F|^2 over frequency: H is the
+// eye's filter (EyeFilter), F the spectrum of the pattern in square degrees. A compact pattern is so small that the eye
+// sums over its whole area. For a Gabor pattern, the area of summation is limited.
 #pragma once
 
 #include "hvs/eye/contrast_sensitivity.h"

@@ -12,7 +12,7 @@ struct EyeParameters {
   double sensitivity = 1202;            ///< K: d' per unit contrast per degree, detection
   double photon_noise_td = 575;         ///< E0: retinal illuminance at which photon noise equals neural noise
   double inhibition_per_degree = 7.36;  ///< u0: highest frequency of lateral inhibition, cycles per degree
-  double critical_cycles = 3.44;        ///< n_c: detection sums over an area of pi (n_c / u)^2
+  double critical_cycles = 3.44;        ///< n_c: detection sums over the area pi (n_c / u)^2 at frequency u
   double area_exponent = 0.284;         ///< gamma: growth of the effective area beyond the critical area
   double uncertainty_channels = 500;    ///< M: number of channels among which the person searches for the relevant one
   double contrast_noise = 0.03;         ///< kappa: noise proportional to the response to the target
@@ -37,11 +37,11 @@ class EyeFilter {
 
   [[nodiscard]] double pupil_mm() const { return pupil_mm_; }
   /// Returns H^2 at a frequency in cycles per degree, for detection of a known pattern: d'^2 per squared contrast and
-  /// square degree. It is 0 at frequency 0 and from the diffraction limit upwards.
+  /// square degree. H^2 is 0 at frequency 0 and from the diffraction limit upwards.
   [[nodiscard]] double detection_power(double frequency_per_degree) const;
-  /// Returns H^2 for identification: the detection power times (d'(M) / d'(1))^2 with M channels of uncertainty. The
-  /// factor is needed because the parameters were fitted to detection data, which contain the effect of this
-  /// uncertainty. An observer model with an explicit search has less uncertainty.
+  /// Returns H^2 for identification: the detection power times (d'(M) / d'(1))^2, where d'(n) is detection_d_prime(n)
+  /// and M is uncertainty_channels. The factor is needed because the parameters were fitted to detection data, which
+  /// contain the effect of this uncertainty. An observer model with an explicit search has less uncertainty.
   [[nodiscard]] double identification_power(double frequency_per_degree) const {
     return identification_gain_ * detection_power(frequency_per_degree);
   }

@@ -10,7 +10,7 @@
 namespace todbench {
 
 /// Luminance contrasts of all levels relative to the background, in increasing order. The background is in the middle
-/// of the luminance range. The effect of the veil is included.
+/// of the luminance range. The contrasts include the veil (ambient light that the display reflects).
 using LevelContrasts = std::array<double, 256>;
 /// Returns the luminance contrasts of all levels of a display.
 [[nodiscard]] LevelContrasts level_contrasts(const ViewedDisplay& display);

@@ -59,7 +59,7 @@ struct ViewedDisplay {
 /// signs.
 [[nodiscard]] double largest_contrast(const ViewedDisplay& display);
 /// Returns the luminance contrast of a target of `delta_t_k` kelvin, without sign. With a fixed gain it is the mean of
-/// a hot and a cold target. Error: `invalid_input` if the display cannot show it.
+/// the contrasts of a hot and a cold target. Error: `invalid_input` if the display cannot show this contrast.
 [[nodiscard]] Result<double> luminance_contrast(const ViewedDisplay& display, double delta_t_k);
 /// Returns luminance_contrast(), or the largest contrast that can be shown if the contrast exceeds it.
 [[nodiscard]] double shown_contrast(const ViewedDisplay& display, double delta_t_k);

@@ -18,10 +18,10 @@ namespace todbench {
 
 /// A patch with a recorded answer.
 struct AnsweredPatch {
-  cv::Mat1f kelvin;       ///< square with an even number of samples on a side; centred in the observer's window
-  double contrast_k = 0;  ///< effective contrast, signed
-  double noise_k = 0;     ///< temporal noise of the sensor, sd per sample
-  double size_samples = 0;
+  cv::Mat1f kelvin;         ///< square with an even number of samples on a side; centred in the observer's window
+  double contrast_k = 0;    ///< effective contrast, signed
+  double noise_k = 0;       ///< temporal noise of the sensor, sd per sample
+  double size_samples = 0;  ///< size of the target: square root of area
   int samples_per_pitch = 1;
 };
 
@@ -35,8 +35,8 @@ struct AnswerLogProbabilities {
 /// probabilities are available for any blur sigma and any standard deviation s of this noise per sample (relative to
 /// the contrast).
 ///
-/// Values are computed at the nodes of a lattice in ln sigma and ln s. The same draws of white noise z in the window
-/// are used for all nodes and for all patches of one size. The score of template t is <T_t, g> + s <T_t, z>. The
+/// Values are computed at the nodes of a lattice in ln sigma and ln s. All nodes and all patches of one size use the
+/// same draws of white noise z in the window. The score of template T is <T, g> + s <T, z>, g = patch / contrast. The
 /// component of z along the difference of the two best templates is integrated in closed form (conditioning, Owen 2013,
 /// 8.7). The largest score of an alternative is a convex function of this component. This function is approximated as
 /// piecewise linear between 19 points at distances of half a standard deviation. The probability of each range in which
@@ -76,11 +76,11 @@ class AnswerLattice {
   [[nodiscard]] const AnsweredPatch& patch(std::size_t index) const;
 
   /// Returns ln p of each alternative for a patch. `first`: sigma of the blur in samples; with an eye, the noise of the
-  /// eye in a score. Values outside the domain are replaced by the nearest limit.
+  /// eye in a score. `noise`: s. Values outside the domain are replaced by the nearest limit.
   [[nodiscard]] AnswerLogProbabilities log_probabilities(std::size_t patch, double first, double noise);
   [[nodiscard]] bool has_eye() const;
-  /// Returns the noise of the eye in a score of this patch, for an eye with `gain` times the sensitivity. Precondition:
-  /// has_eye().
+  /// Returns the noise of the eye in a score of this patch, for an eye with `gain` times the sensitivity and with kappa
+  /// = `contrast_noise` (EyeParameters). Precondition: has_eye().
   [[nodiscard]] double eye_noise(std::size_t patch, double gain, double contrast_noise) const;
 
  private:

@@ -18,15 +18,15 @@ struct EyeTemplates {
   int steps = 8;              ///< search positions per sample
   int reach = 8;              ///< search steps in each direction
   double sample_deg = 0;      ///< side of a displayed sample
-  double contrast_noise = 0;  ///< kappa
+  double contrast_noise = 0;  ///< kappa of EyeParameters
   double template_scale = 1;  ///< d'^2 at contrast 1 per unit of the bank's scores
   ViewedDisplay display;
 };
 
 /// White noise of 1 per square degree after the eye's filter H. The scores of templates i and j have the covariance
 /// G_ij = <H F_i, H F_j>, where F is the spectrum of the target after the display. G_ii is d'^2 of the ideal target at
-/// contrast 1. Noise proportional to the contrast multiplies the standard deviation by sqrt(1 + kappa^2 c^2 G_ii).
-/// Immutable, thread-safe.
+/// contrast 1. At luminance contrast c, noise proportional to the contrast multiplies the standard deviation by sqrt(1
+/// + kappa^2 c^2 G_ii), kappa = contrast_noise. Immutable, thread-safe.
 class EyeNoise {
  public:
   /// Largest share of the variance of a score that may be missing in the draws. For comparison, the scores of two small
@@ -48,7 +48,7 @@ class EyeNoise {
   [[nodiscard]] double sd(double contrast_k, double gain, double contrast_noise) const;
   /// Returns the number of independent normal numbers in one draw.
   [[nodiscard]] std::size_t rank() const { return columns_.size(); }
-  /// Returns the columns of the factor of the covariance relative to energy(): one value for each template.
+  /// Returns the columns of the covariance factor, relative to energy(). A column has one value for each template.
   [[nodiscard]] const std::vector<std::vector<double>>& columns() const { return columns_; }
   /// Adds `sd` times the noise scores that belong to the normal numbers. `numbers`: rank() elements; `scores`:
   /// padded_templates() elements.

@@ -71,7 +71,7 @@ class IdentificationBank {
   [[nodiscard]] std::size_t scores() const { return aspects_.size() * static_cast<std::size_t>(places_ * places_); }
   /// Returns the scores of all templates for a patch of window_samples()^2 values whose mean is 0.
   [[nodiscard]] std::vector<float> project(const cv::Mat1f& patch) const;
-  /// Returns project() of each patch, with bit-identical results. This is faster than single calls, because the
+  /// Returns project() of each patch, with bit-identical results. One call is faster than single calls, because the
   /// templates, which may have hundreds of megabytes, are read only once.
   [[nodiscard]] std::vector<std::vector<float>> project_all(std::span<const cv::Mat1f> patches) const;
   /// Returns the side of a noise picture of the eye, in points of the fine lattice; 0 without an eye.
@@ -81,10 +81,10 @@ class IdentificationBank {
   [[nodiscard]] std::vector<std::vector<float>> project_eye(std::span<const cv::Mat1f> white) const {
     return eye_->project_all(white);
   }
-  /// Returns the standard deviation of the eye's noise in a score, for pictures in kelvin. `contrast_k`: contrast of
-  /// the shown view; `level`: this contrast in the unit of the edges of the view. `seeing`: the observer of the bank,
-  /// or an observer that differs from that observer only in sensitivity, channels or contrast noise. Precondition: the
-  /// observer has an eye.
+  /// Returns the standard deviation of the eye's noise in a score, for pictures in kelvin. `aspect`: index of the shown
+  /// view; `contrast_k`: its contrast; `level`: this contrast in the unit of the edges of the view. `seeing`: the
+  /// observer of the bank, or an observer that differs from that observer only in sensitivity, channels or contrast
+  /// noise. Precondition: the observer has an eye.
   [[nodiscard]] double eye_noise_k(const TemplateObserverSpec& seeing, std::size_t alternative, std::size_t aspect,
                                    double contrast_k, double level) const;
   /// Returns d'^2 of a view at luminance contrast 1, for the observer of the bank; `level` as in eye_noise_k().

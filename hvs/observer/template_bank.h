@@ -21,7 +21,7 @@ struct TemplateObserverSpec;
 /// template of the first alternative has the norm 1.
 ///
 /// Template (o, p) is alternative o at search position p. A template has one value for the centre of each displayed
-/// sample: k + 1/2 from the centre of the window, k = -m .. m - 1.
+/// sample: k + 1/2 from the centre of the window, k = -m .. m - 1, where 2 m is the side of the window.
 class TemplateBank {
  public:
   /// Computes the templates. Error: `invalid_input` if the bank would exceed `max_bytes`.

@@ -65,7 +65,7 @@ class TemplateObserver final : public Observer {
   [[nodiscard]] const TemplateObserverSpec& spec() const { return spec_; }
   [[nodiscard]] Result<std::shared_ptr<const PreparedObserver>> prepare(double size_samples,
                                                                         int samples_per_pitch) override;
-  /// Returns the bank used by prepare(), for estimators that use the templates directly.
+  /// Returns the bank used by prepare(), for estimators that use the templates directly. Errors as prepare().
   [[nodiscard]] Result<std::shared_ptr<const TemplateBank>> bank(double size_samples, int samples_per_pitch);
 
  private:

@@ -20,8 +20,8 @@ struct FrequencyLattice {
 
 /// Returns the Fourier transform of the polygon's indicator at frequency (u, w), in cycles per unit length: the
 /// integral of exp(-2 pi i (u x + w y)) over its area. The transform is a sum over edges with sinc factors. The
-/// relative error is about 1e-15 times the number of turns, also at the origin and for wave vectors perpendicular to an
-/// edge.
+/// relative error is about 1e-15 times the number of turns of the phase, u x + w y, also at the origin and for wave
+/// vectors perpendicular to an edge.
 [[nodiscard]] std::complex<double> polygon_spectrum(const Polygon& polygon, double u, double w);
 
 /// Returns the Fourier transform on a lattice: rows w = -band..band, columns u = 0..band. The other half plane follows

@@ -16,10 +16,10 @@ struct Alternative {
   double ln_shift = 0;  ///< ln(threshold of the alternative / threshold of the fit)
 };
 
-/// Returns the best alternative; empty if no alternative has a threshold. The alternatives are: the other form; both
-/// forms with a free lapse, if `options` fix the lapse; the model with a cubic in ln size instead of the straight line,
-/// with the lapse of the fit and with larger lapses up to 0.1. `fit`: fit of the levels with `options`. Precondition:
-/// the fit has a threshold.
+/// Returns the best alternative; empty if no alternative has a threshold. The alternatives are: the other
+/// PsychometricForm; both forms with a free lapse, if `options` fix the lapse; the model with a cubic in ln size
+/// instead of the straight line, with the lapse of the fit and with larger lapses up to 0.1. `fit`: fit of the levels
+/// with `options`. Precondition: the fit has a threshold.
 [[nodiscard]] std::optional<Alternative> best_alternative(std::span<const Level> levels, const PsychometricFit& fit,
                                                           const FitOptions& options);
 

@@ -24,8 +24,8 @@ struct Contradiction {
 };
 
 /// Tests by the binomial distribution whether fewer answers are correct than expected from guessing. Returns the size
-/// with the smallest p. Empty if p is above `probability` at every size. For counts of binary answers. If the answers
-/// of a size come from several clusters, its counts are divided by the ratio of the clustered to the binomial variance.
+/// with the smallest p. Empty if p is above `probability` at every size. For binary answers. If the answers of a size
+/// come from several clusters, its counts are divided by the ratio of the clustered to the binomial variance.
 [[nodiscard]] std::optional<Contradiction> below_chance(std::span<const Level> levels, double probability);
 
 /// Tests whether the answers contradict a fit whose verdict is `step`. At each size, any proportion is permitted

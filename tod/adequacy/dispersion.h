@@ -16,7 +16,7 @@ struct Dispersion {
   double degrees_of_freedom = 0;
   /// Degrees of freedom of the expectation, if it is estimated from clusters. 0: the expectation is exact.
   double denominator_freedom = 0;
-  /// Return the probability under the model of a ratio at least as large (p_more) or at most as large (p_less).
+  /// Return the probability, under the model, of a ratio of at least `ratio` (p_more) or at most `ratio` (p_less).
   [[nodiscard]] double p_more() const;
   [[nodiscard]] double p_less() const;
   /// Return the ratio above which (upper) or below which (lower) a result occurs by chance with this probability.
@@ -34,9 +34,9 @@ struct Dispersions {
 /// Returns Pearson's statistic over groups of neighbouring sizes. Each group has enough trials for a chi-square
 /// distribution (at least four times the variance of one answer). The statistic is orthogonal to the fitted parameters
 /// and to the directions in `besides`, and uses the exact covariance. For clustered data, its distribution is that of
-/// Rao and Scott (1984) with the second-order correction. If trials are independent and a size has several rows,
-/// Pearson's statistic of these rows is added, with its exact conditional mean and variance (Dawson 1954). `clusters`:
-/// number of clusters of the fit; 0: independent trials.
+/// Rao and Scott (1984) with the second-order correction. If trials are independent and a size has several levels,
+/// Pearson's statistic of these levels is added, with its exact conditional mean and variance (Dawson 1954).
+/// `clusters`: number of clusters of the fit; 0: independent trials.
 [[nodiscard]] Dispersions dispersions(const ModelResiduals& model, std::span<const Level> levels,
                                       std::span<const Direction> besides, double clusters);
 

@@ -48,7 +48,7 @@ struct Direction {
 };
 
 /// Computes directions from weights of the residuals. A direction is orthogonal to the fitted parameters and to the
-/// directions in `besides`. It is empty if less than a hundredth of the variance of the weights then remains.
+/// directions in `besides`. The result is empty if less than a hundredth of the variance of the weights then remains.
 class Directions {
  public:
   explicit Directions(const ModelResiduals& model);
@@ -62,9 +62,9 @@ class Directions {
   std::vector<std::vector<double>> parameters_;  ///< orthonormal
 };
 
-/// Returns the covariance matrix of the scores of directions over clusters, row by row (Liang and Zeger 1986). It
-/// contains the factor G / (G - 1), where G is the number of clusters. In rows without a cluster, each trial is a
-/// cluster. Precondition: `clusters` > 1.
+/// Returns the covariance matrix of the scores of directions over clusters, row by row (Liang and Zeger 1986). The
+/// matrix contains the factor G / (G - 1), where G is the number of clusters. In levels without a cluster, each trial
+/// is a cluster. Precondition: `clusters` > 1.
 [[nodiscard]] std::vector<double> cluster_covariance(const ModelResiduals& model, std::span<const Level> levels,
                                                      std::span<const Direction> directions, double clusters);
 

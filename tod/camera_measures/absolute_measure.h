@@ -65,12 +65,12 @@ struct AbsoluteMeasure {
   /// Straight line of the observed temperature as a function of the expected temperature: slope of the line, and
   /// deviation of the line from the expected temperature at the middle of the range.
   Estimate slope{}, offset_k{};
-  double nonlinearity_percent = 0;
-  Estimate prnu_percent{};  ///< standard deviation of the responsivity over the pixels, without shading
+  double nonlinearity_percent = 0;  ///< largest residual of the line, in percent of the span of the line
+  Estimate prnu_percent{};          ///< standard deviation of the responsivity over the pixels, without shading
   /// Fixed pattern at the middle temperature, separately for the camera and for the source. Empty: not separated.
   std::optional<Estimate> camera_pattern_k{}, source_pattern_k{};
-  /// Linear gradient across the picture, largest minus smallest value. It may be due to the camera or to the source;
-  /// the measurement does not distinguish them.
+  /// Linear gradient across the picture, largest minus smallest value. The gradient may be due to the camera or to the
+  /// source; the measurement does not distinguish camera and source.
   std::optional<double> undetermined_slope_k{};
   /// Temperatures of the lowest and the highest count, if the scale states them.
   std::optional<double> lowest_k{}, highest_k{};

@@ -30,7 +30,7 @@ class BarsJudge {
   /// `invalid_input` (no pair that can be judged), and those of the observer's templates.
   [[nodiscard]] static Result<BarsJudge> create(const MrtdOptions& options, const Registration& where);
   /// Judges all bars and spots in one frame. Bars or spots whose window is partly outside the picture are excluded from
-  /// then on.
+  /// all later frames.
   void add(const cv::Mat1d& kelvin, const ShownBars& shown);
   [[nodiscard]] MrtdMeasure result() const;
 

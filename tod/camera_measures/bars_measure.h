@@ -55,7 +55,7 @@ struct PlateBarsCtf {
 ///
 /// The contrast is the signal in the centres of the plate's rectangles minus the signal of the area that is more than 5
 /// pixels away from every cut-out. The contrast is corrected to first order for light that the optics spread farther:
-/// an MTF that begins as 1 - a f spreads a / (4 pi^2 r^3) at a distance r (Fourier pair). The value a is measured at
+/// an MTF of 1 - a f at low frequencies f spreads a / (4 pi^2 r^3) to a distance r. The value a is measured at
 /// the edges of the rectangles (plate_edges()), and the spread light is summed over the drawing of the plate. The
 /// half-width of the interval of this correction is the whole correction, because a halo spreads light differently.
 /// Halos wider than the squares reduce the contrast of squares and bars equally and are not part of the CTF.

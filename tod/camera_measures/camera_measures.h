@@ -106,8 +106,8 @@ struct TransferMeasure {
   /// Straight line of the observed contrast as a function of the reported contrast. The slope is 1 if the temperature
   /// scale of the camera is correct.
   SignalTransfer line;
-  /// Returns the half-width of the 95 % interval of the slope. It uses Student's t with the degrees of freedom of the
-  /// fit.
+  /// Returns the half-width of the 95 % interval of the slope. The half-width contains Student's t with the degrees of
+  /// freedom of the fit.
   [[nodiscard]] double slope_half_width() const;
 };
 
@@ -276,7 +276,7 @@ struct CameraMeasures {
   /// Returns the temporal noise divided by the slope for an extended source (SourceSizeMeasure::slope()), with its 95 %
   /// interval.
   [[nodiscard]] std::optional<Estimate> netd_extended_k() const;
-  /// Returns the relative half-width of the 95 % interval of netd_k(): the root of the sum of squares of the relative
+  /// Returns the relative half-width of the 95 % interval of netd_k(): the root sum of squares of the relative
   /// half-widths of noise and slope.
   [[nodiscard]] std::optional<double> netd_relative_half_width() const;
 };

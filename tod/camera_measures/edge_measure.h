@@ -26,7 +26,7 @@ struct EdgeMtf {
   /// Mean of the sides, and limits of the 95 % interval of the mean, which is not symmetric. low = 0: not known.
   std::vector<double> mtf, low, high;
   double widest_halo_pitch = 0;                    ///< largest sigma of the halos that are part of the MTF
-  double halo_allowance = 0;                       ///< largest share of the step that the interval allows for halos
+  double halo_allowance = 0;                       ///< largest share of the contrast that the interval allows for halos
   double wide_halo_least = 0, wide_halo_most = 0;  ///< largest limits among the sides (SlantedEdge)
   std::optional<double> mtf50_per_pitch{};         ///< lowest frequency at which the MTF is 0.5
   /// MTF of a simulated sensor in closed form, at the same frequencies and angle; empty for a real camera.
@@ -51,9 +51,9 @@ struct PlateEdges {
 /// of the tails to the interval is common to all sides of the rectangle. The lower and the upper half-width of the
 /// interval are each at least half of the difference between the measured sides.
 ///
-/// `where`: mapping from millimetres on the plate to pixels, correct except for a shift. It may be the registration of
-/// a different plate in the same holder. Errors: `calibration` (rectangles not in the picture), `invalid_input` (plate
-/// without rectangles).
+/// `where`: mapping from millimetres on the plate to pixels, correct except for a shift. The registration of a
+/// different plate in the same holder is allowed. Errors: `calibration` (rectangles not in the picture),
+/// `invalid_input` (plate without rectangles).
 [[nodiscard]] Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                              const Registration& where, const TailBounds& bounds);
 [[nodiscard]] inline Result<PlateEdges> plate_edges(const cv::Mat1d& picture, const TargetPlate& mounted_plate,

@@ -52,7 +52,7 @@ struct MrtdPoint {
   std::optional<double> positive_k{}, negative_k{};
   std::optional<double> threshold_k{};  ///< half of (positive_k - negative_k)
   Interval ci95{};                      ///< interval of threshold_k, by jackknife over the set-ups
-  /// Values of threshold_k for the best and the worst observer of the range of the open parameters (open_parameters.h),
+  /// Values of threshold_k for the best and the worst observer within the range of open parameters (open_parameters.h),
   /// from the same frames. Empty without an eye, or if one of the two observers has no threshold. This is not a
   /// confidence interval.
   std::optional<std::pair<double, double>> spread_k{};

@@ -22,7 +22,7 @@ namespace todbench {
                                                     std::size_t which, const cv::Rect2d& plate,
                                                     const TailBounds& bounds);
 
-/// Returns these tails for a part of the picture. `origin`: position of the upper left pixel of this part in the whole
+/// Returns `tails` for a part of the picture. `origin`: position of the upper left pixel of this part in the whole
 /// picture.
 [[nodiscard]] PlateTails moved_to(const PlateTails& tails, cv::Point origin);
 

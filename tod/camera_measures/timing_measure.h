@@ -57,8 +57,8 @@ struct LatencyMeasure {
   double speed_mm_s = 0;
   std::vector<double> runs_ms{};    ///< latency in each run
   std::vector<double> frames_ms{};  ///< latency in each frame of the runs
-  /// Time stamp of a frame minus the time at which the target was at the position shown in the frame. It includes the
-  /// time constant of the detector and half of the exposure. Positive: the frame is late.
+  /// Time stamp of a frame minus the time at which the target was at the position shown in the frame. The latency
+  /// includes the time constant of the detector and half of the exposure. Positive: the frame is late.
   Estimate latency_ms{};
 };
 

@@ -62,7 +62,7 @@ using ReadCameraTemperature = std::function<std::optional<double>()>;
                                              const ReadCameraTemperature& temperature, const std::stop_token& stop);
 
 /// Returns the time after which |d level / dt| stays below `k_per_min` according to the law. Empty if this time is
-/// after the last group. For an approach A (1 - exp(-t / T)) it is T ln(A / (T rate)).
+/// after the last group. For A (1 - exp(-t / T)), t from the first group, it is T ln(A / (T r)), r in K/s.
 [[nodiscard]] std::optional<double> stable_from(const DriftLaw& law, double k_per_min);
 
 }  // namespace todbench

@@ -96,10 +96,10 @@ void add_paired(Comparison& comparison, std::size_t point, const RatioOfPairs& p
 /// unpaired values.
 [[nodiscard]] Comparison as_decided(Comparison comparison);
 
-/// Likelihood-ratio comparison of two data sets at one contrast, with a common slope or separate slopes. It assumes
-/// independent trials.
+/// Likelihood-ratio comparison of two data sets at one contrast, with a common slope or separate slopes. Trials must be
+/// independent.
 struct ThresholdTest {
-  double lr = 0;  ///< 2 (ll1 - ll0), chi-square with one degree of freedom
+  double lr = 0;  ///< 2 (ll_separate - ll_common), chi-square with one degree of freedom
   double p_difference = 1;
   double ln_ratio = 0;  ///< ln(threshold A / threshold B)
   /// Standard error from the observed information; 0 if the information is singular (a step).

@@ -14,8 +14,8 @@
 
 namespace todbench {
 
-/// Returns a sentence for reports with a paired ratio. It states the errors that do not cancel. `measured_once`: result
-/// of has_contrast_measured_once().
+/// Returns a sentence for reports with a paired ratio. The sentence states the errors that do not cancel.
+/// `measured_once`: result of has_contrast_measured_once().
 [[nodiscard]] std::string not_cancelled_by_pairs(bool measured_once);
 
 /// One presentation of one triangle: the answer to the camera's frames and the twin's answers.
@@ -44,7 +44,7 @@ struct OwnFunctions {
 /// The twin is simulated at the contrast that the camera measured once in each set-up. The variance over set-ups
 /// therefore contains the scatter of this contrast, except for the part common to all set-ups. This part
 /// (`contrast.shared_se_ln_acuity`) is added. The variance over presentations and positions does not contain this
-/// scatter, so the whole of it (`contrast.se_ln_acuity`) is added.
+/// scatter, so the whole scatter (`contrast.se_ln_acuity`) is added.
 ///
 /// `draws` is stored in the result. The verdict is that of compare(), with Student's t. Errors: `invalid_input` (as
 /// twin_shape_estimate(), fewer than two clusters, a margin that is not positive, probabilities outside 0 to 1).

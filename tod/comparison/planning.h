@@ -34,7 +34,7 @@ struct ExpectedFit {
 /// Returns the probability that two one-sided tests at 5 % find two acuities equivalent within `margin_percent` (ratio
 /// inside [1/(1+m), 1+m]). `true_ln_ratio`: true value of the logarithm of their ratio; `se_ln_ratio` > 0: standard
 /// error of the estimate of this logarithm. The result is exact for normally distributed estimates (Schuirmann 1987).
-/// It is 0 if the 90 % interval is wider than the margin.
+/// The probability is 0 if the 90 % interval is wider than the margin.
 [[nodiscard]] double equivalence_power(double se_ln_ratio, double margin_percent, double true_ln_ratio);
 
 /// One contrast of a planned comparison.

@@ -31,7 +31,7 @@ class InstrumentDevice {
 
   [[nodiscard]] Result<void> send(const std::string& text, const std::stop_token& stop);
   [[nodiscard]] Result<std::string> ask(const std::string& text, const std::stop_token& stop);
-  /// Returns the numbers in the answer to a query, unconverted.
+  /// Returns the numbers in the answer to a query, not converted. Error: `disconnected` (not `count` numbers).
   [[nodiscard]] Result<std::vector<double>> numbers(const NumberQuestion& question, std::size_t count,
                                                     const std::stop_token& stop);
   /// Returns whether the instrument has settled. Also true if the table has no query for it.

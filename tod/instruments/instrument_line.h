@@ -41,13 +41,13 @@ class InstrumentLine {
   [[nodiscard]] virtual bool one_at_a_time() const { return false; }
 };
 
-/// Returns a connected, non-blocking TCP socket.
+/// Returns a connected, non-blocking TCP socket. Errors: `not_found` (no connection before `deadline`), `interrupted`.
 [[nodiscard]] Result<Descriptor> connect_tcp(const std::string& host, std::uint16_t port,
                                              InstrumentLine::TimePoint deadline, const std::stop_token& stop);
-/// Sends all of `bytes` over a non-blocking descriptor. Raises no signal if the peer has closed a socket.
+/// Sends all bytes over a non-blocking descriptor, without SIGPIPE. Errors: `timeout`, `interrupted`, `disconnected`.
 [[nodiscard]] Result<void> send_all(int fd, std::string_view bytes, InstrumentLine::TimePoint deadline,
                                     const std::stop_token& stop);
-/// Receives 1 to 4096 bytes.
+/// Receives 1 to 4096 bytes. Errors: `timeout`, `interrupted`, `disconnected`.
 [[nodiscard]] Result<std::string> receive_some(int fd, InstrumentLine::TimePoint deadline, const std::stop_token& stop);
 
 }  // namespace todbench

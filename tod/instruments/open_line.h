@@ -12,7 +12,7 @@
 namespace todbench {
 
 /// Opens the connection to an address. `serial`: settings if the address is a serial port. Errors: `not_found` (no
-/// instrument, no access, no serial port, or timeout), `interrupted`.
+/// instrument, no access, no serial port, or timeout), `interrupted`; for VXI-11 also `timeout`, `disconnected`.
 [[nodiscard]] Result<std::unique_ptr<InstrumentLine>> open_line(const InstrumentAddress& address,
                                                                 const SerialSettings& serial,
                                                                 InstrumentLine::TimePoint deadline,

@@ -84,7 +84,7 @@ class ScpiClient {
   TimePoint last_exchange_{};
 };
 
-/// Splits an answer at commas outside quotes, removes quotes, and replaces doubled quotes inside them by single ones.
+/// Splits an answer at commas outside quotes, removes quotes, and replaces doubled inner quotes by single quotes.
 [[nodiscard]] std::vector<std::string> scpi_fields(std::string_view answer);
 /// Returns a text as SCPI string data: in quotes, with inner quotes doubled.
 [[nodiscard]] std::string scpi_quoted(std::string_view text);

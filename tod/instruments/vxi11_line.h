@@ -23,7 +23,7 @@ inline constexpr std::uint32_t error_timeout = 15;
 }  // namespace vxi11
 
 /// Opens a link to the device in the address. Queries the port mapper of the host unless the address states a port. The
-/// end of an instrument's message is returned as a line end.
+/// end of an instrument's message is returned as a line end. Errors as open_line().
 [[nodiscard]] Result<std::unique_ptr<InstrumentLine>> open_vxi11_line(
     const InstrumentAddress& address, InstrumentLine::TimePoint deadline, const std::stop_token& stop,
     std::uint16_t port_mapper_port = vxi11::port_mapper_port);

@@ -29,8 +29,8 @@ struct ContrastMeasurement {
 /// Returns the standard error of the mean over measurements of one contrast. Two kinds of errors do not cancel in this
 /// mean: errors common to the triangles of a set-up, and errors of the detectors at one position in the picture (fixed
 /// pattern). Set-ups and positions (place_of()) are therefore treated as two-way clusters. The variance is V_set_up +
-/// V_place - V_triangle (Cameron, Gelbach and Miller 2011), at least V_set_up and at least V_place. Empty with fewer
-/// than two set-ups and fewer than two positions.
+/// V_place - V_triangle (Cameron, Gelbach and Miller 2011), at least V_set_up and at least V_place: the variances with
+/// set-ups, positions and single triangles as clusters. Empty with fewer than two set-ups and fewer than two positions.
 [[nodiscard]] std::optional<ContrastError> contrast_error(std::span<const ContrastMeasurement> measurements);
 
 /// Returns contrast_error() for each set contrast, at least the error due to noise. Contrasts whose error cannot be

@@ -22,9 +22,9 @@ struct LagEstimate {
 };
 
 /// Lags of a run. The model of the contrast of small triangles is M = r (L - lag dL/dt) + c, where L is the contrast of
-/// large triangles. The lag common to ramps up and down is estimated from all set-ups. Separate lags of ramps up and
-/// down require presentations at a constant contrast, because ramps alone do not distinguish an error of r from lags of
-/// opposite sign.
+/// large triangles and r and c are constants of a set-up. The lag common to ramps up and down is estimated from all
+/// set-ups. Separate lags of ramps up and down require presentations at a constant contrast, because ramps alone do not
+/// distinguish an error of r from lags of opposite sign.
 struct ContrastLag {
   LagEstimate all;                          ///< lag from all set-ups, ramps up and down together
   std::optional<LagEstimate> down{}, up{};  ///< lags of ramps down and up, from the set-up with the held contrast

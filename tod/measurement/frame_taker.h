@@ -46,8 +46,8 @@ struct AveragedPicture {
   cv::Mat1d kelvin;
   cv::Mat1w lowest, highest;  ///< smallest and largest count of each pixel over the frames
   int significant_bits = 16;
-  /// Standard deviation per pixel and frame, sqrt(mean d^2 / 2) over successive frames, without changes of the whole
-  /// frame; 0 for a single frame.
+  /// Standard deviation per pixel and frame: sqrt(mean d^2 / 2), where d is the difference of a pixel between
+  /// successive frames, without changes of the whole frame. 0 for a single frame.
   double temporal_noise_k = 0;
   /// Lag-1 correlation of a pixel's noise in successive frames (first_order_correlation()); empty: fewer than eight
   /// frames, or no noise.
@@ -72,9 +72,9 @@ class FrameTaker {
 
   /// Announces a change of the scene. Frames that arrived before `now_ns` (clock of Frame::host_time_ns) are discarded.
   void scene_changed(std::int64_t now_ns);
-  /// Commands a non-uniformity correction of the camera.
+  /// Commands a non-uniformity correction of the camera. Errors: those of FrameSource::correct_nonuniformity().
   [[nodiscard]] Result<void> correct_nonuniformity();
-  /// Announces that the camera has carried out the command. Frames are rejected until nuc_wait_s after `now_ns`.
+  /// Announces that the commanded correction is complete. Frames are rejected until nuc_wait_s after `now_ns`.
   void corrected(std::int64_t now_ns);
 
   /// Returns the next accepted frame. Errors: `integrity` (too many rejected), `disconnected` (lost, or no frame within
@@ -87,11 +87,11 @@ class FrameTaker {
   /// Returns the next accepted frame of a moving scene. Discards no frame, and does not treat a changing picture as a
   /// correction. Errors: those of next().
   [[nodiscard]] Result<Frame> next_of_moving_scene(std::stop_token stop);
-  /// Removes one accepted frame from the source without counting it as used.
+  /// Removes one accepted frame from the source without counting it as used. Errors: those of next().
   [[nodiscard]] Result<void> discard(std::stop_token stop);
   /// Function that is called with each frame of an average and its picture in kelvin.
   using EachFrame = std::function<void(const Frame&, const cv::Mat1d& kelvin)>;
-  /// Averages `count` accepted frames. `each`: called for each of these frames; may be empty.
+  /// Averages `count` accepted frames. `each`: called for each frame; may be empty. Errors: next(), to_kelvin().
   [[nodiscard]] Result<AveragedPicture> average(int count, std::stop_token stop, const EachFrame& each = {});
 
   [[nodiscard]] std::uint64_t used() const { return used_; }

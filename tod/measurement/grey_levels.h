@@ -50,7 +50,7 @@ struct GreySteps {
 [[nodiscard]] GreySteps grey_steps(const cv::Mat1w& lowest, const cv::Mat1w& highest, double noise_levels);
 
 /// Returns the variance of the mean of many rounded values, in squared steps, averaged over all positions of the true
-/// value between two steps. It is the sum over k of exp(-4 pi^2 k^2 s^2) / (2 pi^2 k^2), where s is the standard
+/// value between two steps. It is the sum over k >= 1 of exp(-4 pi^2 k^2 s^2) / (2 pi^2 k^2), where s is the standard
 /// deviation of normal noise in steps. Without noise it is 1/12 (Widrow and Kollar 2008, Quantization Noise, 4.3).
 [[nodiscard]] double rounding_variance(double noise_steps);
 
@@ -62,7 +62,7 @@ struct GreyContrast {
   double standard_uncertainty = 0;
   double degrees_of_freedom = 1;  ///< Welch and Satterthwaite
   int triangles = 0;
-  /// Returns half of the 95 % interval.
+  /// Returns the half-width of the 95 % interval, in grey levels.
   [[nodiscard]] double half_width() const;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contrast and noise of the pictures that processing stages compute from the frames of a camera. Stages may change the
-// scale. The observer judges relative to the contrast, so the contrast of the judged picture must be used instead of
-// that of the camera's frame.
+// Contrast and noise of the pictures that processing stages compute from the frames of a camera. Processing stages may
+// change the scale. The observer judges relative to the contrast, so the contrast of the judged picture must be used
+// instead of that of the camera's frame.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -25,7 +25,7 @@ struct JudgedScale {
   /// the stages invert the contrast.
   double gain = 1;
   double gain_error = 0;    ///< standard error, from the scatter over the triangles
-  double camera_level = 0;  ///< contrast of the large triangles in the camera's frames, on its scale
+  double camera_level = 0;  ///< contrast of the large triangles in the camera's frames, on the camera's scale
   double noise_ratio = 1;   ///< noise of a judged frame, on its scale, divided by the noise of a camera's frame, on the
                             ///< camera's scale
   bool changes = false;     ///< true: the gain changes from frame to frame and is measured in each frame
@@ -36,13 +36,13 @@ struct JudgedContrast {
   std::string plate;
   Mounting mounting = Mounting::identity;
   double set_delta_t_k = 0;
-  double delta_t_k = 0;         ///< before the stages, reported by the target
-  double judged_delta_t_k = 0;  ///< after the stages, on the camera's scale
-  double noise_k = 0;           ///< noise that is passed to the observer, relative to the contrast before the stages
+  double delta_t_k = 0;         ///< before the processing stages, reported by the target
+  double judged_delta_t_k = 0;  ///< after the processing stages, on the camera's scale
+  double noise_k = 0;           ///< noise passed to the observer, converted to kelvin before the stages
   JudgedScale scale{};
 };
 
-/// Returns whether any stage changed the frame.
+/// Returns whether any processing stage changed the frame.
 [[nodiscard]] bool behind_stages(const Frame& frame);
 
 /// Returns the contrast of the large triangles in one judged frame, computed from mean levels, on the scale of the

@@ -132,7 +132,7 @@ struct MeasurementResult {
   std::vector<Presentation> presentations;
   std::vector<SetUpRecord> set_ups;
   std::vector<ContrastMeasurement> contrasts;    ///< measured contrasts in kelvin, one for each set-up and contrast
-  std::vector<JudgedContrast> judged_contrasts;  ///< filled if there are stages after the camera
+  std::vector<JudgedContrast> judged_contrasts;  ///< filled if processing stages follow the camera
   std::uint64_t frames_used = 0;
   std::map<std::string, std::uint64_t> frames_rejected;  ///< number of rejected frames by reason
   std::uint64_t frames_lost = 0;                         ///< number of frames missing in the sequence numbers

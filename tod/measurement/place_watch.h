@@ -48,10 +48,10 @@ struct PlateSeen {
 
 /// Measures the position of the plate in each presentation. Within a set-up, positions are averaged over the last 1, 2,
 /// 4, ... presentations until the standard error is 0.03 px. If no mean reaches this
-/// error, the mean over the most presentations is used. The mean replaces the requested position if it differs from the
-/// requested position by more than 0.05 px and more than six standard errors. Otherwise the requested position
-/// is used unchanged. For a plate at the requested position, six standard errors on two axes are exceeded once in 7e7
-/// measurements. One thread at a time.
+/// error, the mean over the largest number of presentations is used. The mean replaces the requested position if it
+/// differs from the requested position by more than 0.05 px and more than six standard errors. Otherwise the requested
+/// position is used unchanged. For a plate at the requested position, six standard errors on two axes are exceeded once
+/// in 7e7 measurements. One thread at a time.
 class PlaceWatch {
  public:
   explicit PlaceWatch(PlaceWatchOptions options) : options_(options) {}

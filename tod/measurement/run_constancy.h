@@ -38,13 +38,13 @@ struct PictureResidue {
   double share = 0;
   /// Largest share that is not a finding.
   double limit = 0;
-  /// True: the residue is in the pictures after the stages. False: it is in the frames of the camera.
+  /// True: the residue is in the pictures after processing stages. False: it is in the frames of the camera.
   bool behind_stages = false;
 };
 
-/// Contrast of the large triangles of one set-up at one set contrast: in its presentations, and in the average before
-/// them, in which the contrast was measured. Both contrasts are amplitudes of the same fit (fit_place()), so an inexact
-/// blur changes both equally.
+/// Contrast of the large triangles of one set-up at one set contrast: in its presentations, and in the preceding
+/// average, in which the contrast was measured. Both contrasts are amplitudes of the same fit (fit_place()), so an
+/// inexact blur changes both equally.
 struct PresentedContrast {
   /// Set contrast.
   double set_delta_t_k = 0;
@@ -76,8 +76,8 @@ struct ConstancyFigure {
   [[nodiscard]] bool beyond() const { return value > limit || value < -limit; }
 };
 
-/// Standard uncertainty of the ratio of the observed contrasts of two groups of set-ups. If the simulated camera is
-/// less sharp than the real camera, the response of the contrast estimator differs by up to 2 % between plates with
+/// Standard uncertainty of the ratio between the observed contrasts in two groups of set-ups. If the simulated camera
+/// is less sharp than the real camera, the response of the contrast estimator differs by up to 2 % between plates with
 /// different triangle sizes.
 inline constexpr double transfer_systematic_u = 0.01;
 /// Probability of a false alarm of transfer_change() in a whole run.
@@ -102,9 +102,9 @@ inline constexpr double transfer_false_alarm = 0.005;
 /// the mean square of the N - 1 successive differences has the relative variance (3 N - 4) / ((N - 1)^2 n). For noise
 /// with memory the variance is smaller.
 ///
-/// Grey levels: the noise is relative to the contrast, so a change of the gain does not change it. The limit then
-/// contains a further term, added in quadrature: the error of the quotient of the two contrasts, times Student's t for
-/// the probability transfer_false_alarm, which the averages share. As in transfer_change(), this error contains
+/// Grey levels: the noise is relative to the contrast, so a change of the gain has no effect on the noise. The limit
+/// then contains a further term, added in quadrature: the error of the quotient of the two contrasts, times Student's t
+/// for the probability transfer_false_alarm, which the averages share. As in transfer_change(), this error contains
 /// transfer_systematic_u and the scatter of a triangle, pooled over the averages of the contrast. The scatter is
 /// counted twice: for the mean over the triangles of each average, and for a pattern common to these triangles.
 [[nodiscard]] std::optional<ConstancyFigure> noise_change(std::span<const PictureNoise> noise);
@@ -114,8 +114,8 @@ inline constexpr double constancy_errors = 5;
 /// Returns the relative difference between the contrast in the presentations and the measured contrast. The difference
 /// with the largest ratio to its limit is returned, over all elements of `presented`. The limit is constancy_errors
 /// standard errors and most_presented_change, added in quadrature. The standard error combines the errors of both
-/// amplitudes. It takes into account that the fixed pattern is the same in all presentations. Empty if no contrast was
-/// presented.
+/// amplitudes. This error takes into account that the fixed pattern is the same in all presentations. Empty if no
+/// contrast was presented.
 [[nodiscard]] std::optional<ConstancyFigure> presented_change(std::span<const PresentedContrast> presented);
 /// Relative difference that is allowed in addition to the standard errors, because the amplitude of triangles of four
 /// pixels depends on their phases.
@@ -125,7 +125,7 @@ inline constexpr double most_presented_change = 0.04;
 /// difference with the largest ratio to its limit is returned, over all contrasts and later averages. The limit is
 /// constancy_errors standard errors, at least most_correlation_change. The correlation is computed from the ratio of
 /// the mean squares at the lags 1 and l = min(8, N / 4). The relative variance of this ratio is v(1) + v(l) - 2 c,
-/// where v(l) = (2 m + max(0, m - l)) / m^2 / n, m = N - l and c = (2 m - 1) / (m (N - 1)) / n.
+/// where v(l) = (2 m + max(0, m - l)) / m^2 / n, m = N - l and c = (2 m - 1) / (m (N - 1)) / n (N, n: noise_change()).
 [[nodiscard]] std::optional<ConstancyFigure> correlation_change(std::span<const PictureNoise> noise);
 inline constexpr double most_correlation_change = 0.2;  ///< five errors of 16 frames of 120 lines: 0.13
 
@@ -137,12 +137,12 @@ inline constexpr double most_correlation_change = 0.2;  ///< five errors of 16 f
 [[nodiscard]] std::optional<PictureResidue> picture_residue(const cv::Mat1d& before, const cv::Mat1d& first,
                                                             const cv::Mat1d& last, const cv::Mat1d& mean,
                                                             double noise_k);
-/// Returns the residue in the judged pictures of an average. The share is computed for each picture, because stages may
-/// scale each picture differently. `before`: mean of the judged pictures of the previous average; `mean`: mean of
-/// `pictures`. The residue is the share in the first picture minus the mean share in the second half of the pictures.
-/// The limit includes five standard deviations of the shares in the second half. The noise is the median over the
-/// pixels. Empty as for picture_residue(), for fewer than eight pictures, and if `before` is empty or has a different
-/// size.
+/// Returns the residue in the judged pictures of an average. The share is computed for each picture, because processing
+/// stages may scale each picture differently. `before`: mean of the judged pictures of the previous average; `mean`:
+/// mean of `pictures`. The residue is the share in the first picture minus the mean share in the second half of the
+/// pictures. The limit includes five standard deviations of the shares in the second half. The noise is the median over
+/// the pixels. Empty as for picture_residue(), for fewer than eight pictures, and if `before` is empty or has a
+/// different size.
 [[nodiscard]] std::optional<PictureResidue> judged_residue(const cv::Mat1d& before, std::span<const cv::Mat1w> pictures,
                                                            const cv::Mat1d& mean);
 /// Smallest limit of a residue. It exceeds the residue that rounding, or a fixed pattern that drifts between

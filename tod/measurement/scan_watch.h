@@ -44,7 +44,7 @@ class ScanFrames {
 inline constexpr double most_scan_deviation = 0.25;
 
 /// Checks a scan with the data of all set-ups. Fixed pattern displaces the triangles equally at every scan position.
-/// This displacement is part of the common origin of a set-up, so standard errors contain only the temporal noise.
+/// This displacement is part of the common origin of a set-up, so the standard errors contain only the temporal noise.
 class ScanWatch {
  public:
   /// Adds the frames of a set-up or contrast. `registration`: registration in the mean of the frames. Error:

@@ -32,16 +32,16 @@ namespace todbench {
 /// plate with fewer than two large enough triangles); the errors of the observer.
 [[nodiscard]] Result<void> check_before_measuring(const MeasurementOptions& options, Observer& observer,
                                                   const SourceInfo& camera);
-/// Performs the part of check_before_measuring() that needs only the plates.
+/// Performs the part of check_before_measuring() that needs only the plates. Error: `invalid_input`.
 [[nodiscard]] Result<void> check_grey_references(const MeasurementOptions& options);
 
 /// Contrast of a set-up, with the noise and the scale that are needed for judging.
 struct SeenContrast {
   /// Effective contrast.
   double contrast_k = 0;
-  /// Noise of a pixel in one frame, with the correction for memory and for the stages. 0: not measured.
+  /// Noise of a pixel in one frame, corrected for memory and for the processing stages. 0: not measured.
   double noise_k = 0;
-  /// Noise of a pixel in one frame of the camera, before any stage.
+  /// Noise of a pixel in one frame of the camera, before any processing stage.
   double camera_noise_k = 0;
   /// Signal transfer in grey levels per kelvin. 0: the contrast is in kelvin.
   double levels_per_k = 0;
@@ -53,7 +53,7 @@ struct SeenContrast {
   std::vector<ReferenceTriangle> references{};
   /// Contrast of the smaller triangles (Presentation::small_delta_t_k). Empty: not measured.
   std::optional<double> small_contrast_k{};
-  /// Scale of the judged pictures. Empty: no stage after the camera.
+  /// Scale of the judged pictures. Empty: no processing stage after the camera.
   std::optional<JudgedScale> judged{};
   /// Fit of the large triangles in the average. Empty: the contrast had not settled, or is in grey levels.
   std::optional<PlaceFit> large{};
@@ -104,8 +104,8 @@ class SetUpStep {
   [[nodiscard]] Result<GreyFrame> grey_frame(const Frame& frame, const TargetPlate& mounted_plate,
                                              const Registration& registration, const TargetState& set,
                                              const SeenContrast& seen) const;
-  /// Returns the gain of the judged frame: kelvin in this frame per kelvin in the camera's frames. 1 without stages.
-  /// Precondition: the contrast of this set-up was measured last. Errors: those of judged_gain().
+  /// Returns the gain of the judged frame: kelvin in this frame per kelvin in the camera's frames. 1 without
+  /// processing. Precondition: the contrast of this set-up was measured last. Errors: those of judged_gain().
   [[nodiscard]] Result<double> gain_of(const Frame& frame, const TargetPlate& mounted_plate,
                                        const Registration& registration, const SeenContrast& seen) const;
   /// Returns the number of pixels in the window at the lowest or the highest count, without defective pixels.
@@ -113,7 +113,7 @@ class SetUpStep {
     return saturation_.saturated_pixels(frame, window);
   }
   /// Returns the number of samples of the judged picture in the window at the lowest or the highest count. The range of
-  /// counts after the stages may differ from that of the camera.
+  /// counts after the processing stages may differ from that of the camera.
   [[nodiscard]] int saturated_samples(const Frame& frame, const cv::Rect& window) const;
 
   /// Returns the temporal noise per pixel and frame, from differences of successive frames; 0: not measured.
@@ -127,7 +127,7 @@ class SetUpStep {
   [[nodiscard]] const RunConstancy& constancy() const { return constancy_; }
 
  private:
-  /// Takes an average and compares it with the previous one.
+  /// Takes an average and compares it with the previous average.
   [[nodiscard]] Result<AveragedPicture> average(int count, std::stop_token stop,
                                                 const FrameTaker::EachFrame& each = {});
   [[nodiscard]] bool grey() const { return options_.contrast_unit == ContrastUnit::grey_levels; }
@@ -136,7 +136,7 @@ class SetUpStep {
   void note_saturation(const AveragedPicture& picture, const TargetPlate& mounted_plate,
                        const Registration& registration, const TargetState& set, double contrast);
   /// Determines the lowest and the highest count of the judged pictures, and adds a note about saturation. `contrast`:
-  /// contrast after the stages.
+  /// contrast after the processing stages.
   void note_saturation_behind(const JudgedFrames& frames, const TargetPlate& mounted_plate, const TargetState& set,
                               double contrast);
   [[nodiscard]] Result<SeenContrast> in_kelvin(const EffectiveContrast& measured, const TargetState& set) const;
@@ -146,7 +146,7 @@ class SetUpStep {
 
   /// Keeps the residue with the largest ratio of share to limit.
   void keep_residue(const std::optional<PictureResidue>& residue);
-  /// Adjusts `seen` for the stages after the camera.
+  /// Adjusts `seen` for the processing stages after the camera.
   void judge_by(const std::optional<JudgedScale>& judged, const TargetState& set, SeenContrast& seen);
 
   const MeasurementOptions& options_;
@@ -161,11 +161,11 @@ class SetUpStep {
   /// of successive frames contain only a part of the noise.
   double noise_of_frame_k_ = 0;
   double memory_ratio_ = 1;              ///< JudgedMemory::ratio()
-  std::vector<double> noted_contrasts_;  ///< set contrasts for which a note about the stages was added
+  std::vector<double> noted_contrasts_;  ///< set contrasts for which a note about processing stages was added
   std::optional<double> noise_counts_, lag1_correlation_;
   ContrastWait wait_ = ContrastWait::settled;
   cv::Mat1d before_;         ///< mean of the last average; empty: no average yet
-  cv::Mat1d judged_before_;  ///< mean of the judged pictures of the last average; empty: no stage changed them
+  cv::Mat1d judged_before_;  ///< mean of the judged pictures of the last average; empty: not processed
   RunConstancy constancy_;
   ScanWatch scan_;
 };

@@ -20,9 +20,9 @@ struct TargetChange {
 };
 
 /// Presents a state. Frames that the camera sends during the change are treated as
-/// RunController::frames_while_presenting() states. A second thread takes the frames if they are to be taken. A failure
-/// of the camera then ends the wait for the target, because a black body may need minutes to settle, and the state must
-/// be presented again after the failure. Errors: only those of `host`.
+/// RunController::frames_while_presenting() states. For FramesWhilePresenting::take, a second thread takes the frames.
+/// A failure of the camera then ends the wait for the target, because a black body may need minutes to settle, and the
+/// state must be presented again after the failure. Errors: only those of `host`.
 [[nodiscard]] Result<TargetChange> change_target(Target& target, FrameTaker& taker, RunController& host,
                                                  const TargetState& state, std::stop_token stop);
 

@@ -15,8 +15,8 @@ namespace todbench {
 /// 36 unknowns take about 50 us without a starting point.
 class BoundedLeastSquares {
  public:
-  /// Solves the problem. `gram` is stored by rows. Precondition: low <= high, matching sizes, no NaN. Bounds may be
-  /// infinite.
+  /// Solves the problem. `gram`: G, stored by rows; `right`: r. Precondition: low <= high, matching sizes, no NaN.
+  /// Bounds may be infinite.
   BoundedLeastSquares(const std::vector<double>& gram, const std::vector<double>& right, const std::vector<double>& low,
                       const std::vector<double>& high);
 

@@ -22,7 +22,7 @@ struct DriftGroup {
 
 /// Form of the change with time.
 enum class DriftShape {
-  linear,    ///< t
+  linear,    ///< proportional to the time t since the first group
   approach,  ///< 1 - exp(-t / T): exponential change towards a limit
 };
 [[nodiscard]] std::string_view to_string(DriftShape shape);
@@ -57,7 +57,7 @@ inline constexpr std::size_t least_drift_groups = 8;
 
 /// Fits level and pattern as functions of time. Groups are weighted by their number of frames. The level is fitted by
 /// least squares. The pattern is fitted by analysis of variance of the pixels' regressions on time, with modified
-/// large-sample intervals (Graybill and Wang 1980). The fit begins with a straight line. It is replaced by an
+/// large-sample intervals (Graybill and Wang 1980). The fit begins with a straight line. The line is replaced by an
 /// exponential, with the time constant of least squares, if the residuals are then significantly smaller (F test at 1
 /// %). With the noise of many pixels, the search for a time constant always finds an exponential that fits slightly
 /// better than the line. For the pattern, F is therefore first reduced by 2.5 standard deviations of the improvement

@@ -37,8 +37,8 @@ class SplineSums {
   SplineSums& operator-=(const SplineSums& other);
   [[nodiscard]] double samples() const { return samples_; }
   /// Returns the least-squares curve. A small penalty on third differences determines the curve in intervals without
-  /// samples. The penalty changes an amplitude at half a cycle per four knots by less than 1e-5. Empty if there are
-  /// fewer samples than coefficients.
+  /// samples. The penalty changes the amplitude of a wave with half a cycle per four knots by less than 1e-5. Empty if
+  /// there are fewer samples than coefficients.
   [[nodiscard]] std::optional<Spline> solve() const;
 
  private:

@@ -66,8 +66,8 @@ struct TailBounds {
 /// aberrations can only increase the slope. The factor 0.9 allows for errors of the stated band and f-number.
 [[nodiscard]] TailBounds diffraction_bounds(double f_number, double mean_wavelength_um, double pitch_um);
 
-/// Returns the transfer of each of the first columns at a frequency in cycles per pitch. It is 0 for the level and for
-/// wide halos.
+/// Returns the transfer of each of the first columns at a frequency in cycles per pitch. The transfer is 0 for the
+/// level and for wide halos.
 [[nodiscard]] std::array<double, edge_tails::first_shading> tail_transfer(double frequency_per_pitch,
                                                                           const TailBounds& bounds);
 /// Returns the coefficients of the contrast to which the MTF refers. This contrast is a linear function of the factors
@@ -95,13 +95,13 @@ class TailFit {
   [[nodiscard]] const TailBounds& bounds() const { return bounds_; }
   /// Returns whether the picture shows negative shares.
   [[nodiscard]] bool sharpened() const { return families_.front().negative > 0; }
-  /// Returns the upper limit of the 95 % interval of the share of halos that are part of the MTF.
+  /// Returns the upper limit (95 %) for the share of the contrast in halos that are part of the MTF.
   [[nodiscard]] double halo_allowance() const;
-  /// Return the lower and the upper limit of the 95 % interval of the share of the step in halos that are too wide for
-  /// the MTF.
+  /// Return the lower and the upper limit (95 %) of the share of the step in halos wider than TailBounds::widest_pitch,
+  /// which are not part of the MTF.
   [[nodiscard]] double least_wide_share() const { return farthest_wide_share(-1); }
   [[nodiscard]] double most_wide_share() const { return farthest_wide_share(1); }
-  /// Standard deviation of a pixel, in the unit of the samples.
+  /// Returns the standard deviation of a pixel, in the unit of the samples.
   [[nodiscard]] double noise() const { return noise_; }
   [[nodiscard]] std::size_t unknowns() const { return unknowns_; }
 
@@ -154,7 +154,7 @@ class TailSamples {
   std::vector<Sample> samples_;
   std::vector<double> rows_;
   std::vector<double> gram_, right_;
-  double square_ = 0, pixels_ = 0;  ///< sum of pixels value^2, and of pixels
+  double square_ = 0, pixels_ = 0;  ///< sums over the samples: of pixels * value^2, and of pixels
 };
 
 }  // namespace todbench

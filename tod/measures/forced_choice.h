@@ -15,7 +15,7 @@ namespace todbench {
 struct ForcedChoice {
   double contrast_k = 0;  ///< signed, as reported by the target; not 0
   int set_up = 0;         ///< position of the plate relative to the pixels
-  bool right = false;
+  bool right = false;     ///< the answer is correct
 };
 
 /// Threshold of one person for one target.
@@ -37,12 +37,12 @@ struct ForcedChoiceThreshold {
 /// Minimum number of answers at each polarity, and minimum number of set-ups, for a threshold.
 inline constexpr int least_choices = 24, least_choice_set_ups = 5;
 
-/// Fits the probability 0.5 l + (1 - l) Phi(0.674 (c / t)^b) to the answers. This function differs from that for the
-/// answers of the model (two_intervals.h) in two ways. The exponent b (0.5 to 6) is common to both polarities. A share
-/// l of lapses (0 to 0.06) is fitted, because a person makes errors that do not depend on the picture. At each of 36
-/// pairs of b and l, ln t of each polarity is fitted by maximum likelihood. The result is the mean over the pairs,
-/// weighted by the likelihood. t is a threshold without lapses, as for the model. In half of the difference of the two
-/// thresholds, the offset of the target cancels.
+/// Fits the probability of a correct answer at contrast c, 0.5 l + (1 - l) Phi(0.674 (c / t)^b), to the answers. This
+/// function differs from that for the answers of the model (two_intervals.h) in two ways. The exponent b (0.5 to 6) is
+/// common to both polarities. A share l of lapses (0 to 0.06) is fitted, because a person makes errors that do not
+/// depend on the picture. At each of 36 pairs of b and l, ln t of each polarity is fitted by maximum likelihood. The
+/// result is the mean over the pairs, weighted by the likelihood. t is a threshold without lapses, as for the model. In
+/// half of the difference of the two thresholds, the offset of the target cancels.
 ///
 /// The interval of ln half_k is computed by jackknife over the set-ups, with Student's t. Its variance is at least the
 /// variance of independent answers, which is computed from the observed information at each pair and from the scatter

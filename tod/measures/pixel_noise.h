@@ -19,9 +19,9 @@ struct PixelNoise {
   /// Interval of sd_rms for independent pixels and frames: chi-squared with pixels x (T - 1) degrees of freedom.
   std::pair<double, double> sd_rms_ci95;
   double sd_rms_detrended = 0;      ///< sd_rms after removal of a straight line in time from each pixel (divisor T - 2)
-  double sd_frame_differences = 0;  ///< sqrt(mean d^2 / 2) of successive frames; too low by the factor sqrt(1 - rho)
-  /// Mean of the pixels' standard deviations, stated in some data sheets. It is too low by the factor c4, and also
-  /// because of the spread of the pixels.
+  double sd_frame_differences = 0;  ///< rms difference of successive frames / sqrt(2); too low for noise with memory
+  /// Mean of the pixels' standard deviations, stated in some data sheets. This mean is too low by the factor c4, and
+  /// also because of the spread of the pixels.
   double mean_of_pixel_sd = 0;
   double c4 = 1;  ///< mean of the standard deviation of T normal values, divided by the true standard deviation
   double mean_of_pixel_sd_corrected = 0;  ///< mean_of_pixel_sd / c4

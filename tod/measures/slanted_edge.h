@@ -27,7 +27,7 @@ struct PlateTails {
   double step = 1;      ///< signed step of the picture for a unit step of the model
 };
 
-/// Share of the step in wide halos above which they are significant: four times the error of the method.
+/// Share of the step in wide halos above which wide halos are significant: four times the error of the method.
 inline constexpr double least_wide_share = 0.002;
 
 /// Options of slanted_edge().
@@ -42,7 +42,7 @@ struct SlantedEdgeOptions {
 /// The MTF along the normal of an edge.
 struct SlantedEdge {
   EdgeAxis axis = EdgeAxis::x;
-  /// Angle from the axis to the edge's normal: the edge is at x0 - (row - middle) tan(angle); likewise for axis y.
+  /// Angle from the axis to the edge's normal: the edge is at edge_at_pitch - (row - middle) tan(angle) (y: column).
   double angle_deg = 0;
   /// Position of the edge on the middle row (column), in pixels from the centre of the first pixel.
   double edge_at_pitch = 0;
@@ -63,9 +63,9 @@ struct SlantedEdge {
   std::vector<double> mtf_low_in_picture;
   std::vector<bool> low_known;   ///< false: only TailBounds::most_halo determines `mtf_low`
   double widest_halo_pitch = 0;  ///< largest sigma of the halos that are part of the MTF
-  double halo_allowance = 0;     ///< largest share of the step that the interval allows for halos
-  /// Limits of the 95 % interval of the share of the step in halos wider than `widest_halo_pitch`. If the upper limit
-  /// is above least_wide_share, `mtf_low` is lower than `mtf_low_in_picture` by the share `wide_halo_most`.
+  double halo_allowance = 0;     ///< largest share of the contrast that the interval allows for halos
+  /// Limits (95 %) for the share of the step in halos wider than `widest_halo_pitch`. If the upper limit is above
+  /// least_wide_share, `mtf_low` is lower than `mtf_low_in_picture` by the share `wide_halo_most`.
   double wide_halo_least = 0, wide_halo_most = 0;
   /// True: the picture is sharpened, and halos with negative shares are part of the fit and of the intervals.
   bool sharpened = false;

@@ -55,13 +55,13 @@ struct StepResponse {
 /// Minimum number of steps of step_response().
 inline constexpr std::size_t least_steps = 4;
 
-/// Fits y = a + g exp(-t / T) with one T for all steps, by least squares. The time of the step is not known on the
-/// clock of the frames, so amplitudes are free parameters. The fit of a step begins one frame interval plus the
-/// settling time after the first frame that shows the step. All exposures from then on begin after the step. From this
-/// frame on, successive differences decrease by the factor exp(-frame / T) for any exposure. There are two estimates of
-/// the interval: the range in which the sum of squares is compatible with chance (F test, 95 %), and a jackknife over
-/// the steps (Student's t). The wider interval is used. If there is a settling time, the interval includes the
-/// remainder of the target's step.
+/// Fits the signal y = a + g exp(-t / T) at time t by least squares: one T for all steps, a and g for each step. The
+/// time of the step is not known on the clock of the frames, so amplitudes are free parameters. The fit of a step
+/// begins one frame interval plus the settling time after the first frame that shows the step. All exposures from then
+/// on begin after the step. From this frame on, successive differences decrease by the factor exp(-frame_s / T) for any
+/// exposure. There are two estimates of the interval: the range in which the sum of squares is compatible with chance
+/// (F test, 95 %), and a jackknife over the steps (Student's t). The wider interval is used. If there is a settling
+/// time, the interval includes the remainder of the target's step.
 ///
 /// Errors: `invalid_input` (fewer than four steps, or samples that cannot be fitted); `calibration` if no time constant
 /// can be determined. The causes are: no step exceeds the noise; no signal remains after the first frames, because the

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Noise of a sequence of frames by direction: time, rows, columns and all combinations of these.
+// Noise of a sequence of frames by direction: time, rows, columns and all their combinations.
 #pragma once
 
 #include <array>
@@ -25,7 +25,7 @@ struct ThreeDNoise {
   double vh = 0;   ///< fixed pattern, and the scene if there is one
   double v = 0;    ///< fixed rows
   double h = 0;    ///< fixed columns
-  /// Returns the temporal noise of a pixel: the root of the sum of squares of t, tv, th and tvh.
+  /// Returns the temporal noise of a pixel: the root sum of squares of t, tv, th and tvh.
   [[nodiscard]] double temporal() const;
 };
 
@@ -56,13 +56,13 @@ class ByComponent {
 struct NoiseTable {
   int frames = 0, rows = 0, columns = 0;
   ByComponent mean_squares;        ///< mean squares in the squared unit of the frames
-  ByComponent degrees_of_freedom;  ///< t T-1, v V-1, h H-1, and their products
+  ByComponent degrees_of_freedom;  ///< t: T - 1 (T frames), v: V - 1 (V rows), h: H - 1 (H columns); otherwise products
   /// First-order correlation rho of tvh in successive frames, below 1. The estimates are corrected for this
   /// correlation. 0: analysis of variance with independent cells. If the noise has memory, its variance over T frames
   /// is too small, and more than 1/T of the variance remains in the mean frame. The mean squares Q have the
-  /// expectations E Q_tvh = h tvh^2 and E Q_vh = T vh^2 + g tvh^2 with g = 1 + 2 sum over k < T of (1 - k / T) rho^k
-  /// and h = 1 - (g - 1) / (T - 1). For example, with rho = 0.8 and 64 frames, the uncorrected noise is 6 % too low,
-  /// and there is an apparent fixed pattern of a third of the noise.
+  /// expectations b tvh^2 for Q_tvh and T vh^2 + g tvh^2 for Q_vh, with g = 1 + 2 sum over 0 < k < T of (1 - k / T)
+  /// rho^k and b = 1 - (g - 1) / (T - 1). For example, with rho = 0.8 and 64 frames, the uncorrected noise is 6 % too
+  /// low, and there is an apparent fixed pattern of a third of the noise.
   double pixel_memory = 0;
 };
 
@@ -100,7 +100,7 @@ class NoiseCube {
   /// Returns the table. Errors: `invalid_input` (fewer than two frames, rows or columns).
   [[nodiscard]] Result<NoiseTable> table() const;
   /// Returns the table after subtraction of a fixed picture, for example the shading of the field. The subtraction
-  /// changes v, h and vh. Precondition: `fixed` has the size of the frames.
+  /// changes v, h and vh. Errors as table(). Precondition: `fixed` has the size of the frames.
   [[nodiscard]] Result<NoiseTable> table_without(const cv::Mat1d& fixed) const;
   /// Returns the mean over all frames. Precondition: at least one frame.
   [[nodiscard]] cv::Mat1d mean_frame() const { return first_ + change_ / frames_; }
@@ -119,8 +119,8 @@ class NoiseCube {
   /// frame, or fewer than five frames.
   [[nodiscard]] std::optional<int> abrupt_change() const;
   /// Returns whether at most three pairs of successive frames have a mean square difference above 1.3 times the median.
-  /// This is true if a correction occurred. With more of these pairs, the noise changes or the scene moves, and the
-  /// result of abrupt_change() is meaningless.
+  /// The result is true if a correction occurred. With more of these pairs, the noise changes or the scene moves, and
+  /// the result of abrupt_change() is meaningless.
   [[nodiscard]] bool few_pairs_stand_out() const;
   /// Returns whether the noise of a pixel differs between the first and the second half of the frames. True if the mean
   /// square differences of successive frames, as in abrupt_change(), have a ratio above 1.15 (7 % of the noise). Chance

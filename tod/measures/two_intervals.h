@@ -32,12 +32,12 @@ struct PassedContrast {
   std::optional<double> contrast_k;
   double relative_error = 0;
 };
-/// Computes this contrast. `contrast_k` is empty if the shares do not increase beyond 75 %.
+/// Computes the lowest contrast at which the share increases beyond 75 %; `contrast_k` is empty if there is none.
 [[nodiscard]] PassedContrast passed_contrast(std::span<const double> contrasts_k, std::span<const ShareOfPairs> shares);
 
-/// Psychometric function of the contrast c, Phi(z75 (c / threshold)^exponent): sensitivity d' is a power function of
-/// contrast (Foley and Legge 1981). After sampling, the energy of a pattern depends on the phase p of the pattern,
-/// because the spectrum interferes with its repeats at integer cycles per sample. The threshold is inversely
+/// Psychometric function of the contrast c, Phi(z75 (c / threshold)^exponent), z75 = 0.674: sensitivity d' is a power
+/// function of contrast (Foley and Legge 1981). After sampling, the energy of a pattern depends on the phase p of the
+/// pattern, because the spectrum interferes with its repeats at integer cycles per sample. The threshold is inversely
 /// proportional to the square root of the energy: threshold = level / sqrt(1 + swing[0] cos(2 pi p) + swing[1] sin(2 pi
 /// p)). The sine term is needed if the position of the pattern has an unknown offset of a fraction of a sample.
 struct ContrastFunction {

@@ -42,7 +42,7 @@ struct MisfitTest {
 
 /// Answers at one contrast and size.
 struct AnswerCell {
-  int cell = 0;
+  int cell = 0;  ///< PersonAnswer::cell
   double answers = 0, correct = 0;
   double expected = 0, sd = 0;  ///< expectation and sd of the number of correct answers under the fitted model
 };

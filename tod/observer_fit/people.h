@@ -29,7 +29,7 @@ struct PersonEstimate {
 };
 /// Returns the random-effects estimate. Neither the values nor the results are transformed.
 [[nodiscard]] PeopleSpread spread_over(std::span<const PersonEstimate> estimates);
-/// Returns the spread of one parameter among people.
+/// Returns the spread of one parameter among people. `key`: ObserverKey as an index.
 [[nodiscard]] PeopleSpread people_spread(std::span<const PersonFit> people, std::size_t key);
 
 }  // namespace todbench

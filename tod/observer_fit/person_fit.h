@@ -32,8 +32,8 @@ struct PersonFit {
   /// not decrease by this drop within the domain. If the domain has a natural limit on this side (factor 1, lapse 0),
   /// the side is this limit.
   std::array<Interval, observer_key_count> ci95{};
-  /// Inverse of the expected information for ln sigma, ln n, ln f and the lapse; 0 for parameters that are not free.
-  /// Empty if the information is singular, because the answers do not distinguish the parameters.
+  /// Inverse of the expected information, by ObserverKey, for ln parameter or the lapse; 0 for parameters that are not
+  /// free. Empty if the information is singular, because the answers do not distinguish the parameters.
   std::optional<std::array<std::array<double, observer_key_count>, observer_key_count>> covariance;
   /// Whether each parameter is at a limit of its domain.
   std::array<bool, observer_key_count> at_limit{};
@@ -41,7 +41,7 @@ struct PersonFit {
   std::size_t answers = 0;
 };
 
-/// Returns the correlation of two estimates; empty without a covariance, or if a parameter is not free.
+/// Returns the correlation of the estimates `a` and `b` (ObserverKey); empty without covariance or if one is not free.
 [[nodiscard]] std::optional<double> correlation(const PersonFit& fit, std::size_t a, std::size_t b);
 /// Returns the standard error of the logarithm of a parameter (for the lapse: of the lapse). Empty without a
 /// covariance, or if the parameter is not free.

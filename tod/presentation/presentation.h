@@ -20,8 +20,8 @@ struct Presentation {
   /// in grey levels, which is measured separately in every frame.
   std::optional<double> delta_t_se_k{};
   int reference_triangles = 0;  ///< number of triangles in which the contrast was measured; 0: not stated
-  /// Contrast of the smaller triangles in the frames of this presentation. It contains an unknown constant factor,
-  /// which depends on blur and plate. Empty: the contrast was not measured in this presentation.
+  /// Contrast of the smaller triangles in the frames of this presentation. The value contains an unknown constant
+  /// factor, which depends on blur and plate. Empty: the contrast was not measured in this presentation.
   std::optional<double> small_delta_t_k{};
   /// Transmittance of the air between target and camera for a contrast; empty: not stated.
   std::optional<double> air_transmittance{};

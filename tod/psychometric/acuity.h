@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Converts sizes to acuities, which are the reciprocals. Lower and upper limits are exchanged.
+// Converts S75, the size at 75 % correct answers, to acuity = 1 / S75. Lower and upper limits are exchanged.
 #pragma once
 
 #include <optional>

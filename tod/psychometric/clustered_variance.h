@@ -18,7 +18,7 @@ inline constexpr std::size_t most_parameters = 4;
 inline constexpr double least_set_ups = 5;
 
 /// Contribution of one answer to the estimating equation of a quasi-likelihood, in units of sqrt(v), where v(mu) is the
-/// variance function.
+/// variance function and mu the mean of the answer.
 struct AnswerScore {
   std::array<double, most_parameters> direction{};  ///< (d mu / d parameter) / sqrt(v)
   double residual = 0;                              ///< (answer - mu) / sqrt(v)
@@ -42,25 +42,25 @@ struct ClusteredVariance {
   double dispersion = 1;  ///< sum of squared residuals divided by (answers minus parameters): 1 for binomial answers
 };
 
-/// Returns the variance of the estimated parameter `which`. `parameters`: number of estimated parameters. It is the
-/// sandwich estimate (Liang and Zeger 1986) with the leverage correction CR2 of the clusters (Bell and McCaffrey 2002).
-/// The variance is below the binomial variance if the answers scatter less than binary answers.
+/// Returns the variance of the estimated parameter `which`. `parameters`: number of estimated parameters. The variance
+/// is the sandwich estimate (Liang and Zeger 1986) with the leverage correction CR2 of the clusters (Bell and McCaffrey
+/// 2002). The variance is below the binomial variance if the answers scatter less than binary answers.
 ///
 /// Graded answers: with at least `least_set_ups` set-ups, set-ups are the clusters. The phases of one set-up are evenly
 /// spaced from one start, and contrast and registration are measured once per set-up. The scatter over set-ups
 /// therefore contains the variation common to presentations. Because of the even spacing, the scatter over set-ups is
-/// much smaller than the scatter over single answers. Its lower limit is a hundredth of the scatter over single
-/// answers. Set-ups that image triangles onto the same detectors have the same fixed pattern. The covariance of answers
-/// of different set-ups at one position in the picture is therefore added: V_place - V_triangle (two-way, Cameron,
-/// Gelbach and Miller 2011). Here a triangle is the part of a position in one set-up. A negative covariance is set to
-/// zero. With fewer set-ups, presentations and positions are two-way clusters: V_presentation + V_place - V_answer, at
-/// least V_presentation and at least V_place. This variance is never too small. It is too large if the effects of
-/// evenly spread phases cancel.
+/// much smaller than the scatter over single answers. The lower limit of the scatter over set-ups is a hundredth of the
+/// scatter over single answers. Set-ups that image triangles onto the same detectors have the same fixed pattern. The
+/// covariance of answers of different set-ups at one position in the picture is therefore added: V_place - V_triangle,
+/// where V_x is the variance over clusters of kind x (two-way, Cameron, Gelbach and Miller 2011). Here a triangle is
+/// the part of a position in one set-up. A negative covariance is set to zero. With fewer set-ups, presentations and
+/// positions are two-way clusters: V_presentation + V_place - V_answer, at least V_presentation and at least V_place.
+/// This variance is never too small. It is too large if the effects of evenly spread phases cancel.
 ///
-/// Binary answers (`binomial`): for any number of set-ups, presentations and triangles are two-way clusters, with at
-/// least the binomial variance. Set-ups are not used as clusters for two reasons: the binomial scatter is far larger
-/// than the variation common to a set-up, and a variance over eight set-ups has a standard deviation of a quarter. If
-/// there is only one cluster of a kind, the other kind is used.
+/// Binary answers (`binomial`): for any number of set-ups, presentations and triangles are two-way clusters, and the
+/// variance is at least the binomial variance. Set-ups are not used as clusters for two reasons: the binomial scatter
+/// is far larger than the variation common to a set-up, and a variance over eight set-ups has a standard deviation of a
+/// quarter. If there is only one cluster of a kind, the other kind is used.
 ///
 /// Degrees of freedom: effective number of clusters minus one. The effective number is (sum of shares)^2 / sum of
 /// squared shares, with the share of each cluster in the information (Satterthwaite 1946). For two-way clusters, the

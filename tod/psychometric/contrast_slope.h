@@ -21,7 +21,7 @@ struct ContrastError {
 };
 
 /// Returns the error of a contrast for reports and schedules: the given error, or the error due to pixel noise alone if
-/// the latter has the wider 95 % interval. The reason is that, with few set-ups, the scatter may be small by chance.
+/// the interval of the noise error is wider. The reason is that, with few set-ups, the scatter may be small by chance.
 /// Pixel noise is therefore a lower limit of the error.
 [[nodiscard]] ContrastError at_least_the_noise(ContrastError error);
 

@@ -17,7 +17,7 @@ struct ContrastNoise {
   double internal_noise = 0;  ///< internal noise of the observer, relative to the contrast; 0: 0.07 as in hvs-1
 };
 
-/// Returns the coordinate u of a contrast: u = ln(hypot(noise_k / |dT|, n) / n) / ln 5, where n is the internal noise.
+/// Returns the coordinate u of a contrast dT: u = ln(hypot(noise_k / |dT|, n) / n) / ln 5, n: internal noise.
 /// u is 0 if the internal noise of the observer dominates. u is 1 at about a fifth of the contrast at which internal
 /// noise and sensor noise are equal. If the counts are fine enough, contrasts with the same u have the same function.
 [[nodiscard]] double contrast_bend(const ContrastNoise& noise, double delta_t_k);
@@ -39,8 +39,8 @@ class ContrastSurface {
   /// TwinShape::of().
   [[nodiscard]] static Result<ContrastSurface> of(std::span<const TableAtContrast> tables, const ContrastNoise& noise);
 
-  /// Returns ln of the size at 75 %. It is cubic in u between the contrasts of the tables, and constant above the
-  /// strongest contrast.
+  /// Returns ln of the size at 75 %. This value is cubic in u between the contrasts of the tables, and constant above
+  /// the strongest contrast.
   [[nodiscard]] double ln_threshold(double delta_t_k) const;
   /// Returns the slope of ln_threshold() per unit of ln contrast, from contrasts 1 % above and below.
   [[nodiscard]] double slope(double delta_t_k) const;

@@ -19,7 +19,7 @@ namespace todbench {
 struct Level {
   double size = 0;     ///< >= 0; 0 is a catch trial (no triangle)
   double correct = 0;  ///< integer, 0 <= correct <= total; for graded answers the sum of their probabilities
-  double total = 0;    ///< integer; 0: the row is ignored
+  double total = 0;    ///< integer; 0: the level is ignored
   /// Index of the cluster: trials with a common phase, frame or fixed pattern; < 0: independent trials.
   int cluster = -1;
 };
@@ -35,8 +35,8 @@ struct GradedAnswer {
   int set_up = 0;  ///< index of plate and mounting of the presentation, at least 0
 };
 
-/// Form of the function. Both forms are Weibull functions with chance level 0.25 that pass through 0.75 at the
-/// threshold.
+/// Form of the function psi of the size x: a Weibull function with chance level g = 0.25, lapse l, scale a and slope b.
+/// At the threshold psi is 0.75.
 enum class PsychometricForm {
   size,    ///< psi = g + (1-g-l)(1 - exp(-(x/a)^b)), increasing in size
   acuity,  ///< psi = g + (1-g-l) exp(-(a/x)^b): a Weibull in acuity 1/x, the form attributed to TNO
@@ -70,7 +70,7 @@ struct FitOptions {
 /// Posterior distribution of the threshold.
 struct Posterior {
   double median = 0;
-  double low = 0, high = 0;  ///< equal-tailed 95 %
+  double low = 0, high = 0;  ///< limits of the equal-tailed 95 % interval
   /// True if the marginal density at a limit of the prior is above 1 % of its maximum. In this case the prior, not the
   /// data, determines the result.
   bool prior_bound = false;
@@ -156,7 +156,7 @@ struct PsychometricFit {
   /// (drop 2.71).
   Interval ci95;
   Interval ci90;                ///< 90 % interval by profile likelihood (drop 2.71), for equivalence tests
-  std::optional<double> slope;  ///< b
+  std::optional<double> slope;  ///< b of PsychometricForm
   /// True if the slope is at the upper limit of its domain, 50. In this case the likelihood increases up to this limit,
   /// and the intervals are computed with slopes within the domain. If the answers form a step whose gap is too narrow
   /// for slopes of the domain, the interval contains the gap.

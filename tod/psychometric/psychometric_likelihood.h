@@ -44,12 +44,12 @@ inline constexpr double most_trials = 1e12;
 /// Whether counts of correct answers are integers or sums of probabilities.
 enum class Counts { whole, fractional };
 
-/// Checks the rows. Sizes must be 0 or positive normal numbers (a denormal number has lost digits). Counts must be as
+/// Checks the levels. Sizes must be 0 or positive normal numbers (a denormal number has lost digits). Counts must be as
 /// stated by `Counts`, with correct <= total and at most most_trials in total. Error: `invalid_input` with the first
-/// invalid row.
+/// invalid level.
 [[nodiscard]] Result<void> validate(std::span<const Level> levels, Counts counts = Counts::whole);
 
-/// Pools validated rows. Sizes closer than 1e-12 (relative) are one level.
+/// Pools validated levels. Levels whose sizes differ by less than 1e-12 (relative) become one level.
 [[nodiscard]] PooledCounts pool(std::span<const Level> levels);
 /// Pools two sets, with sizes relative to the reference of the first.
 [[nodiscard]] PooledCounts pool(const PooledCounts& a, const PooledCounts& b);
@@ -84,7 +84,7 @@ struct Scores {
 /// ln likelihood in the limiting cases of the model (Prins 2019). If one of these values is the supremum, there is no
 /// maximum.
 struct LikelihoodLimits {
-  double chance = 0;   ///< threshold -> infinity: psi = g everywhere
+  double chance = 0;   ///< threshold -> infinity: psi = chance level everywhere
   double ceiling = 0;  ///< threshold -> 0: psi = 1 - lapse at every positive size; -infinity with an error at lapse 0
   double ceiling_lapse = 0;  ///< lapse for `ceiling`
   /// Slope -> infinity: chance level at smaller sizes, 1 - lapse at larger sizes, and any value between these at one
@@ -95,10 +95,10 @@ struct LikelihoodLimits {
 /// is at chance level below the threshold and at 1 - lapse above the threshold. If a threshold between two levels is
 /// included, the whole gap between these levels is included. A side without a value is unbounded.
 struct StepExtent {
-  bool any = false;
+  bool any = false;  ///< false: no ideal step has this likelihood
   std::optional<double> low, high;
 };
-/// Computes this range. `lapse` as in likelihood_limits().
+/// Computes the range of StepExtent. `lapse` as in likelihood_limits().
 [[nodiscard]] StepExtent step_extent(const PooledCounts& counts, std::optional<double> lapse, double least);
 /// Computes the values of LikelihoodLimits. `lapse`: fixed lapse; empty: free in [0, 0.1].
 [[nodiscard]] LikelihoodLimits likelihood_limits(const PooledCounts& counts, std::optional<double> lapse);

@@ -13,7 +13,7 @@ inline constexpr double max_free_lapse = 0.1;  ///< domain of a free lapse
 
 /// A form of the function at one lapse: psi = g + A H and 1 - psi = l + A (1 - H) with g = chance level, l = lapse and
 /// A = 1 - g - l. H is 1 - exp(-z) (size form) or exp(-z) (acuity form), where z = kappa exp(u) and u = +-b (ln x - ln
-/// x75). The value of kappa(l) is chosen to make psi(x75) = 0.75.
+/// x75) with size x, threshold x75 and slope b. The value of kappa(l) is chosen to make psi(x75) = 0.75.
 struct Link {
   PsychometricForm form = PsychometricForm::size;
   double lapse = 0;

@@ -20,8 +20,8 @@ struct ProfileRequest {
   double narrow_drop = 0;  ///< 2 (supremum - profile) at the inner crossing, <= wide_drop
 };
 
-/// Crossings in t that are nearest to the start on each side. A crossing is empty if the likelihood never decreases by
-/// the drop.
+/// Crossings in t = ln(threshold / reference size) that are nearest to the start on each side. A crossing is empty if
+/// the likelihood never decreases by the drop.
 struct ProfileCrossings {
   struct Side {
     std::optional<double> wide, narrow;

@@ -36,10 +36,10 @@ struct RampDifference {
   [[nodiscard]] bool beyond() const;
 };
 
-/// Fit of P(S, dT) = F(S exp(-a(u)), dT) with a(u) = a0 + a1 u + a2 u^2, where F is the surface and u its
-/// contrast_bend(). Therefore ln S75(dT) = ln S75 of the surface + a(u). The fit is by quasi-likelihood as in
-/// fit_twin_shape(). The stretch a(u) is constant if the values of u of the answers span less than 0.05, and linear if
-/// they span less than 0.3.
+/// Fit of the proportion correct at size S and contrast dT: P(S, dT) = F(S exp(-a(u)), dT) with a(u) = a0 + a1 u + a2
+/// u^2, where F is the surface and u its contrast_bend(). Therefore ln S75(dT) = ln S75 of the surface + a(u). The fit
+/// is by quasi-likelihood as in fit_twin_shape(). The stretch a(u) is constant if the values of u of the answers span
+/// less than 0.05, and linear if they span less than 0.3.
 class RampFit {
  public:
   /// Fits the answers. Errors: `invalid_input` (no answers, or answers that do not determine the stretch).

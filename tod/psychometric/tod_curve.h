@@ -73,7 +73,7 @@ struct TodPoint {
   double delta_t_shared_se_k = 0;  ///< part of delta_t_se_k that the scatter over measurements does not contain
   int delta_t_measurements = 0;    ///< number of measurements; 0: not stated
   std::optional<double> delta_t_freedom{};  ///< degrees of freedom of delta_t_se_k; empty: measurements minus one
-  std::vector<Level> levels;                ///< data of the fit: counts, one row per size and cluster
+  std::vector<Level> levels;                ///< data of the fit: one element per size and cluster
   PsychometricFit fit;                      ///< fit with sizes in mrad
   /// Reason for a Weibull function or for the function of the twin; empty: not stated.
   std::optional<EstimatorReason> estimator_reason;
@@ -115,8 +115,8 @@ inline constexpr double boundary_drop = 2.705543454095404;
 
 /// Groups trials by set contrast, counts them per size and presentation, and fits each group. Intervals are computed
 /// once with clusters by presentation and once with clusters by position on the plate, because answers at one position
-/// have the same fixed pattern. The wider interval is reported. If all answers of a group are graded, they are fitted
-/// by fit_graded(), in which one variance includes both kinds of clusters.
+/// have the same fixed pattern. The wider interval is reported. If all answers of a group are graded, fit_graded() fits
+/// them with one variance for both. Errors: `invalid_input` (no trials, a non-finite contrast), those of the fit.
 [[nodiscard]] Result<TodCurve> tod_curve(std::span<const Trial> trials, const FitOptions& options);
 
 /// Converts trials to binary answers. Each answer is that to one frame.

@@ -14,12 +14,12 @@ namespace todbench {
 /// A table as a smooth, increasing function of ln size. Immutable, cheap to copy.
 class TwinShape {
  public:
-  /// Creates the function from ln((P - 1/4) / (1 - P)), which is nearly a straight line in ln size. These values are
-  /// smoothed by local parabolas through seven nodes, weighted by their standard errors. The smoothed values are made
-  /// increasing and joined by monotone cubics (Fritsch and Carlson 1980). Usable nodes are those at which P differs
-  /// significantly from chance level and from 1. Outside these nodes, the function is a straight line. Errors:
-  /// `invalid_input` (sizes that do not increase, proportions outside 0 to 1, fewer than five usable nodes, or no
-  /// usable node on one side of 75 %).
+  /// Creates the function from ln((P - 1/4) / (1 - P)), P being a proportion of the table. It is nearly linear in ln
+  /// size. These values are smoothed by local parabolas through seven nodes, weighted by their standard errors. The
+  /// smoothed values are made increasing and joined by monotone cubics (Fritsch and Carlson 1980). Usable nodes are
+  /// those at which P differs significantly from chance level and from 1. Outside these nodes, the function is a
+  /// straight line. Errors: `invalid_input` (sizes that do not increase, proportions outside 0 to 1, fewer than five
+  /// usable nodes, or no usable node on one side of 75 %).
   [[nodiscard]] static Result<TwinShape> of(const ProportionTable& table);
 
   struct Value {
@@ -66,7 +66,7 @@ class TwinShape {
                                                                const PsychometricFit& fit, PsychometricForm form);
 
 /// Returns the gain in twice the ln quasi-likelihood by a free lapse, divided by the variance inflation of the lapse.
-/// It is 0 if the free lapse is not larger than the lapse of `fit`. Both fits use the function of the twin.
+/// The gain is 0 if the free lapse is not larger than the lapse of `fit`. Both fits use the function of the twin.
 [[nodiscard]] double twin_lapse_gain(const PsychometricFit& fit, const PsychometricFit& free_fit);
 
 /// ln threshold from graded answers according to the function of a twin, and the contribution of each answer.

@@ -7,8 +7,8 @@
 
 namespace todbench {
 
-/// Four bars of width 1 / (2 f), with spaces of the same width, contrast 1 and the middle of the group at 0. A real
-/// transfer function is applied along the axis across the bars. Immutable, thread-safe.
+/// Four bars of width 1 / (2 f) for the frequency f, with spaces of the same width, contrast 1 and the middle of the
+/// group at 0. A real transfer function is applied along the axis across the bars. Immutable, thread-safe.
 class BlurredBars {
  public:
   /// Computes the bars. `transfer`: even function of the frequency in cycles per pitch; 1 at frequency 0. Frequencies
@@ -35,7 +35,7 @@ struct BarModulation {
 /// Computes the modulation at the phases (i + 1/2) / phases - 1/2 pitch. Precondition: phases >= 1.
 [[nodiscard]] BarModulation bar_modulation(const BlurredBars& bars, int phases = 64);
 /// Computes the modulation of any profile, for example of a measured profile. `profile`: function of the position in
-/// pitches, evaluated up to 7 / (4 f) + 1 / 2 from the middle.
+/// pitches, evaluated up to 7 / (4 f) + 1 / 2 from the middle, where f is the frequency.
 [[nodiscard]] BarModulation bar_modulation(const std::function<double(double)>& profile, double frequency_per_pitch,
                                            int phases = 64);
 

@@ -23,8 +23,8 @@ struct CriterionTarget {
 };
 
 /// Resolution at an apparent contrast, per milliradian of the size of the target: the highest resolved frequency, or
-/// the integral of the TTP metric. It does not decrease with increasing contrast. Empty if the contrast is below the
-/// curve.
+/// the integral of the TTP metric. The resolution does not decrease with increasing contrast. Empty if the contrast is
+/// below the curve.
 using ResolvedPerMrad = std::function<std::optional<double>(double apparent_contrast)>;
 /// Returns the resolution for ACQUIRE: the highest frequency in cycles/mrad at which the value of the curve is at most
 /// the contrast. If the contrast is above all values of the curve, the resolution is the last frequency, without
@@ -32,7 +32,7 @@ using ResolvedPerMrad = std::function<std::optional<double>(double apparent_cont
 [[nodiscard]] ResolvedPerMrad resolved_cycles(LogLinearCurve curve);
 /// Returns the resolution for the 2-D frequency of ACQUIRE, sqrt(f_h f_v) at the same contrast.
 [[nodiscard]] ResolvedPerMrad resolved_cycles(LogLinearCurve horizontal, LogLinearCurve vertical);
-/// Returns the resolution for TTP: the integral of sqrt(C / CTF) over the frequencies at which CTF < C, in 1/mrad.
+/// Returns the resolution for TTP at contrast C: integral of sqrt(C / CTF) over frequencies with CTF < C, in 1/mrad.
 [[nodiscard]] ResolvedPerMrad resolved_values(LogLinearCurve ctf);
 
 /// Criterion of a range: number of cycles or values on the target at which the probability is 50 %.
@@ -45,7 +45,7 @@ struct Criterion {
 enum class DominantLimit { resolution, contrast };
 [[nodiscard]] std::string_view to_string(DominantLimit limit);
 
-/// d ln R / d ln size and d ln R / d ln contrast at a range.
+/// d ln R / d ln size and d ln R / d ln contrast at a range R.
 struct RangeSensitivity {
   double to_size = 0, to_contrast = 0;
   [[nodiscard]] DominantLimit dominant() const {

@@ -22,7 +22,7 @@ struct MrtdFormula {
   NoiseRatios noise{};
   double noise_filter_sigma_mrad = 0;  ///< sigma of a Gaussian filter after the noise, per axis; 0: no filter
   /// Number of neighbours along either axis that share the fixed offset (vh) of one detector, for example in a
-  /// microscan. Temporal noise is independent between them.
+  /// microscan. Temporal noise is independent between these neighbours.
   int samples_per_detector = 1;
 };
 
@@ -38,10 +38,10 @@ enum class BarAxis { horizontal, vertical };
 ///   E_w = 2 p int_0^inf N(u)^2 sinc^2(u w) du,
 /// where u is the frequency of the noise, p the pitch of the samples, and N the transfer function of the noise filter.
 /// - E_L: over the length of a bar. It is the same integral with 7 w in place of w.
-/// - F_w and F_L: as E_w and E_L, but for the fixed offsets (vh). If n samples along an axis share a detector, they
-/// have the same offset. The integrand is therefore multiplied by shared_density(n, u p), the spectral density of
-/// common offsets. At low frequencies this density is n, so the offsets have the same effect as those of samples at the
-/// pitch of the detectors. For n = 1, F_w = E_w and F_L = E_L. Preconditions: all values > 0.
+/// - F_w and F_L: as E_w and E_L, but for the fixed offsets (vh). If n samples along an axis share a detector, the n
+/// samples have the same offset. The integrand is therefore multiplied by shared_density(n, u p), the spectral density
+/// of common offsets. At low frequencies this density is n, so the offsets have the same effect as those of samples at
+/// the pitch of the detectors. For n = 1, F_w = E_w and F_L = E_L. Preconditions: all values > 0.
 [[nodiscard]] double perceived_noise_k(const MrtdFormula& formula, double frequency_per_mrad, BarAxis axis);
 
 /// Returns the spectral density of noise common to n neighbouring samples, relative to independent samples of the same

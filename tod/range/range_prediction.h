@@ -34,17 +34,17 @@ struct TodThreshold {
 struct RangeTask {
   double size_m = 0;     ///< square root of the projected area, > 0
   double delta_t_k = 0;  ///< contrast at the target; only the magnitude matters
-  double m75 = 5.1;      ///< value of M at which 75 % of the answers are correct, > 0; 5.1: small craft in side view
+  double m75 = 5.1;      ///< M = acuity * size / range for 75 % correct answers, > 0; 5.1: small craft in side view
   /// Extinction coefficient, >= 0; apparent contrast = contrast * exp(-extinction * range).
   double extinction_per_km = 0;
   std::optional<Transmittance> air{};  ///< replaces the extinction, which is then 0
 };
 
-/// Returns M75 = 0.6 V50. V50 = 8.5 and M75 = 5.1 correspond for small craft in side view (EO-VISTA, 4.2.3).
+/// Returns M75 = 0.6 V50. V50 = 8.5 corresponds to M75 = 5.1 for small craft in side view (EO-VISTA, 4.2.3).
 [[nodiscard]] double m75_from_v50(double v50);
 
 /// Returns the probability of a correct identification at M / M75. It is the target transfer probability function P =
-/// x^E / (1 + x^E), E = 1.51 + 0.24 x, x = V / V50, scaled to P(1) = 0.75. It has no guessing term.
+/// x^E / (1 + x^E), E = 1.51 + 0.24 x, x = V / V50 of the TTP metric, scaled to P(1) = 0.75. It has no guessing term.
 [[nodiscard]] double identification_probability(double m_over_m75);
 
 /// Returns 1, 2 or 5 times a power of ten, at most `value`.

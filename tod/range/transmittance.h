@@ -17,10 +17,10 @@ struct TransmittancePoint {
 };
 
 /// Band transmittance as a function of range. It is not an exponential function of the range: strong lines are absorbed
-/// first, so the effective extinction -ln(tau) / R decreases with range. Immutable, thread-safe.
+/// first, so the extinction -ln(transmittance) / range decreases with range. Immutable, thread-safe.
 class Transmittance {
  public:
-  /// Returns the transmittance exp(-K R).
+  /// Returns the transmittance exp(-`extinction_per_km` R), with the range R in km.
   [[nodiscard]] static Transmittance beer_lambert(double extinction_per_km);
   /// Interpolates a table. The range must increase from row to row, and the transmittance must not increase. A row at 0
   /// m must have the transmittance 1. Between rows ln(-ln tau) is linear in ln R. Below the first row this line is
@@ -29,9 +29,9 @@ class Transmittance {
   /// beyond the last row. Errors: `invalid_input` (no rows, fewer than two usable rows above 0 m, unsorted or repeated
   /// ranges, a transmittance outside 0 to 1, or a transmittance that increases).
   [[nodiscard]] static Result<Transmittance> of_table(std::span<const TransmittancePoint> rows);
-  /// Returns the weighted mean of exp(-k_i R), the law of Beer and Lambert at every wavelength. It is exact at every
-  /// range. Preconditions: the same number of weights and extinctions, at least one of each; weights >= 0 and not all
-  /// 0; extinctions >= 0; all values finite.
+  /// Returns the weighted mean of exp(-k_i R) over the extinctions k_i: the law of Beer and Lambert at every
+  /// wavelength. The mean is exact at every range. Preconditions: the same number of weights and extinctions, at least
+  /// one of each; weights >= 0 and not all 0; extinctions >= 0; all values finite.
   [[nodiscard]] static Transmittance of_spectrum(std::vector<double> weights, std::vector<double> extinction_per_km);
 
   /// Returns the optical depth -ln tau; empty beyond end_m(). Precondition: range_m >= 0.

@@ -8,7 +8,7 @@
 
 namespace todbench {
 
-/// Returns the homography with the smallest sum of squared distances between `to` and the mapped `from`. Its lower
+/// Returns the homography with the smallest sum of squared distances between `to` and the mapped `from`. The lower
 /// right element is 1. The normalised linear solution (Hartley 1997) is improved by the method of Levenberg and
 /// Marquardt. Empty with fewer than four points, if the points do not determine a homography (for example if they lie
 /// on one line), or if a point is mapped to infinity. Precondition: `from` and `to` have the same number of points.

@@ -43,9 +43,9 @@ struct WindowOutOfPicture {
 [[nodiscard]] std::string sentence(const WindowOutOfPicture& window);
 
 /// Returns the triangles of a mounted plate whose window touches a neighbour at the expected scale and aspect of
-/// `options`. For the test, the window is widened by the search range of the observer plus half a pixel. Because of
-/// blur, the neighbour is enlarged by 1.5 px on each side. `sides`: sides of the windows, in the order of the
-/// triangles.
+/// `options`. For the test, the window is widened by `search_px`, the search range of the observer, plus half a pixel.
+/// Because of blur, the neighbour is enlarged by 1.5 px on each side. `sides`: sides of the windows, in the order of
+/// the triangles.
 [[nodiscard]] std::vector<TouchingWindow> touching_windows(const TargetPlate& plate, const RegistrationOptions& options,
                                                            const std::vector<int>& sides, double search_px);
 

@@ -31,7 +31,7 @@ struct PlateSearch {
 /// Match of the picture to the plate in one mounting.
 struct PlateAttempt {
   Mounting mounting = Mounting::identity;
-  double sign = 1;
+  double sign = 1;  ///< 1: matched to the warm blobs; -1: matched to the cold blobs
   std::vector<PlateTriangle> large;
   LayoutMatch match;
   std::vector<PlateTriangle> located;  ///< triangles with the stated orientation

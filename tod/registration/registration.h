@@ -77,7 +77,7 @@ struct Registration {
 
 /// Measures the motion of the picture since `registration`, in pixels. Use it if a person or an unknown drift moves the
 /// plate. The function locates the large triangles in the averaged picture, which must be visible, with either sign of
-/// the contrast. Error: `calibration` if they are not found within `search_px` in x and y.
+/// the contrast. Error: `calibration` if the triangles are not found within `search_px` in x and y.
 [[nodiscard]] Result<cv::Point2d> measure_shift(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                 const Registration& registration, const RegistrationOptions& options,
                                                 double search_px);
@@ -110,7 +110,7 @@ struct EffectiveContrast {
 /// Distance from the edge of a triangle to the inner area of effective_contrast(), as a share of the radius of the
 /// inscribed circle.
 inline constexpr double contrast_inner_share = 0.45;
-/// Upper limit of this distance: three blur widths of 0.4 px.
+/// Upper limit of the distance of contrast_inner_share: three blur widths of 0.4 px.
 inline constexpr double contrast_inner_most_px = 1.25;
 /// Width of the ring of effective_contrast().
 inline constexpr double contrast_ring_width_px = 3;
@@ -122,7 +122,7 @@ inline constexpr double contrast_ring_width_px = 3;
 ///
 /// Blur reduces the contrast, mainly because of the corners. For a total blur of 0.40 px (standard deviation, sampling
 /// included), the reduction averaged over sampling phases is 0.4 % for triangles of 4 px, 0.04 % for 5 px and less than
-/// 0.01 % from 6 px on. If the blur is known, divide the result by that for a simulated picture with contrast 1.
+/// 0.01 % from 6 px on. If the blur is known, divide the result by the result for a simulated picture with contrast 1.
 /// Errors: `invalid_input` (no triangle of this size), `calibration` (a triangle is partly outside the picture).
 [[nodiscard]] Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                            const Registration& registration, double min_size_px,

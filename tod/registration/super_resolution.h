@@ -19,7 +19,7 @@ namespace todbench {
 [[nodiscard]] Result<cv::Point2d> frame_shift(const cv::Mat1f& reference, const cv::Mat1f& frame,
                                               double blur_sigma_px = 1.5);
 
-/// Returns frame_shift() of every frame relative to the first. The shift of the first is {0, 0}.
+/// Returns frame_shift() of every frame relative to the first frame, whose shift is {0, 0}. Errors as frame_shift().
 [[nodiscard]] Result<std::vector<cv::Point2d>> frame_shifts(const std::vector<cv::Mat1f>& frames);
 
 /// A picture with `factor` times as many samples per pixel and axis.
@@ -47,12 +47,12 @@ enum class EmptyCells {
 /// the grid is the best fit to the shifts (circular mean). At the border of the picture, a cell without a sample is set
 /// to the value of the nearest cell. At least factor^2 frames with different sub-pixel shifts are needed to fill every
 /// cell. A pure function. Errors: `invalid_input` (no frame, different sizes, a missing or non-finite shift, or an
-/// empty cell if these are refused).
+/// empty cell with EmptyCells::refused).
 [[nodiscard]] Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames,
                                                   const std::vector<cv::Point2d>& shifts_px, int factor = 2,
                                                   EmptyCells empty = EmptyCells::refused);
 
-/// Computes the picture with the shifts of frame_shifts().
+/// Computes the picture with the shifts of frame_shifts(). Errors: those of frame_shifts() and super_resolve().
 [[nodiscard]] Result<SuperResolved> super_resolve(const std::vector<cv::Mat1f>& frames);
 
 }  // namespace todbench

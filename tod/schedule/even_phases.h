@@ -35,7 +35,7 @@ struct EvenPhases {
 [[nodiscard]] double least_harmonic(int count);
 
 /// Computes `count` shifts for each of `groups` > 0. The shifts of a group form a lattice. Of all lattices with `count`
-/// points, the lattice with the longest shortest dual vector is used. For every triangle, the mean of a function of the
+/// points, the lattice whose shortest dual vector is longest is used. For every triangle, the mean of a function of the
 /// phase over this lattice has no error from harmonics below the length of this vector. The groups are displaced
 /// relative to each other so that the phases of each size, and of each size and orientation, are spread as evenly as
 /// possible. The criterion is the sum of squared wrap-around discrepancies, computed from its Fourier series with the

@@ -18,7 +18,7 @@ struct PsiOptions {
   /// Upper limit of the prior of the threshold.
   double last_size = 10;
   double size_step = 0.05;  ///< step of the candidate sizes, in ln
-  /// Lapse of the model for the selection. It prevents a single wrong answer from excluding the true threshold.
+  /// Lapse of the model for the selection. This lapse prevents a single wrong answer from excluding the true threshold.
   double selection_lapse = 0.01;
   /// Share of trials at 2.5 times the threshold. At this size only a lapse causes a wrong answer.
   double lapse_probe_share = 0.05;

@@ -36,11 +36,11 @@ class TrialSchedule {
 /// The method of constant stimuli on plates: every plate in its mountings at every contrast in every phase.
 struct ConstantStimuliOptions {
   std::vector<std::string> plates;
-  /// Drawings of the plates, by name. They are used to optimise the phases of the triangles together. A plate without a
-  /// drawing is treated as one triangle in its middle.
+  /// Drawings of the plates, by name. The drawings are used to optimise the phases of all triangles together. A plate
+  /// without a drawing is treated as one triangle in its middle.
   std::vector<TargetPlate> drawings{};
   std::vector<Mounting> mountings;
-  /// For each of `plates`, the number of `mountings` in which it is shown, counted from the first one; empty: all.
+  /// For each of `plates`, the number of `mountings` in which the plate is shown, from the first mounting; empty: all.
   std::vector<std::size_t> mountings_per_plate{};
   std::vector<double> delta_t_k;
   int phases = 16;            ///< sub-pixel shifts per plate, mounting and contrast
@@ -64,14 +64,14 @@ struct ConstantStimuliOptions {
 /// the origin.
 [[nodiscard]] std::vector<cv::Point2d> plastic_points(int count);
 
-/// Returns `count` sub-pixel shifts in [0, 1)^2 from a random start drawn from `stream`. They are spread evenly for
-/// every count (additive recurrence with the plastic number, Roberts 2018).
+/// Returns `count` sub-pixel shifts in [0, 1)^2 from a random start drawn from `stream`. The shifts are spread evenly
+/// for every count (additive recurrence with the plastic number, Roberts 2018).
 [[nodiscard]] std::vector<cv::Point2d> spread_phases(int count, const RandomStream& stream);
 
 /// Returns presentations, nested so that the most expensive change occurs least often. Changes with equal costs have
 /// the order plate, mounting, contrast, shift. Within a group of contrasts the highest contrast is first, because the
 /// plate is registered at this contrast. The shifts are those of even_phases(). If a shift costs less than a mounting,
-/// they are spread evenly over all mountings together. Each plate and contrast has a random start within the pixel.
+/// shifts are spread evenly over all mountings together. Each plate and contrast has a random start within the pixel.
 [[nodiscard]] std::vector<TargetState> constant_stimuli(const ConstantStimuliOptions& options,
                                                         const RandomStream& stream);
 
