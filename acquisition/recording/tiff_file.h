@@ -41,7 +41,7 @@ class TiffFile {
   std::uint64_t size_bytes_ = 0;
 };
 
-/// Tags of a page (samples: per pixel; kind: SampleFormat); 0 or libtiff's defaults if absent.
+/// Tags of a page (`samples`: number per pixel; `kind`: SampleFormat); an absent tag has libtiff's default, or 0.
 struct TiffPage {
   std::uint32_t width = 0, height = 0;
   std::uint16_t bits = 1, samples = 1, kind = SAMPLEFORMAT_UINT;
@@ -91,8 +91,8 @@ struct ImageJStack {
   std::uint64_t images = 0;
   std::uint64_t offset = 0;  ///< position of the first pixel in the file
 };
-/// Reads the stack of the first page. Empty if the file states no number of images, one image, or `directories` images
-/// (its pages). Error: `invalid_input` (an unreadable number, or not the stated number of images).
+/// Reads the stack of the first page. Empty if the file states no number of images, or 1, or as many images as it has
+/// pages (`directories`). Error: `invalid_input` (an unreadable number, or not the stated number of images).
 [[nodiscard]] Result<std::optional<ImageJStack>> image_j_stack(const TiffFile& file, std::uint64_t directories);
 
 }  // namespace todbench

@@ -21,7 +21,7 @@ struct KeyOverrides {
   [[nodiscard]] bool has(std::string_view path) const;
 };
 
-/// Adds the options for the commands `of`, without the option of the key `without` (a path; empty: no exception).
+/// Adds the options of the commands in `of`, except the option of the key with the path `without` (empty: all).
 /// `overrides` must outlive the parser.
 void add_key_options(CLI::App& command, OptionOf of, KeyOverrides& overrides, std::string_view without = "");
 

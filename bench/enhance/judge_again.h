@@ -24,9 +24,9 @@ struct JudgeRequest {
 /// that names its origin. The same observer without a package gives the same trials and the same curve. With a package,
 /// the answers are binary and are fitted with a Weibull function, because the psychometric functions of the sensor do
 /// not include the package. Manifest and signature of the session are verified first. Errors: those of
-/// open_recorded_run() and measure_on_bench(); `invalid_input` for an adaptive schedule, whose frames depend on the
-/// answers, for grey levels with a package, for a missing display that the observer requires, and for an invalid
-/// signature; `not_found` if the program that verifies the signature is missing.
+/// open_recorded_run() and measure_on_bench(); `invalid_input` (adaptive schedule, because its frames depend on the
+/// answers; grey levels with a package; no display although the observer requires one; invalid signature);
+/// `not_found` if the program that verifies the signature is missing.
 [[nodiscard]] Result<ExperimentOutcome> judge_again(const std::filesystem::path& session, const JudgeRequest& request,
                                                     ExperimentOptions options, const ExperimentListener& listener,
                                                     std::stop_token stop, const Opening& opening = {},

@@ -19,7 +19,7 @@ struct CurveLines {
   const TodCurve* twin = nullptr;
   std::vector<AcuityLimit> limits{};
 };
-/// Returns a heading and a line for each contrast, each of at most `columns` characters (at least 40 are used).
+/// Returns one heading, and one line per contrast. A line has at most `columns` characters (40 if `columns` is less).
 [[nodiscard]] std::vector<std::string> curve_lines(const CurveLines& shown, std::size_t columns);
 /// Returns the curve in one line: "16.9 K 0.512 [0.470, 0.559], 1.93 K –".
 [[nodiscard]] std::string curve_in_one_line(const CurveLines& shown);

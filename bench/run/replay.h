@@ -34,8 +34,8 @@ struct RecordedRun {
   std::filesystem::path folder;
   Session session;
   RecordedBench recording;
-  /// Plan of the session without recording, physical measures and their limits, because the recorded frames are the
-  /// frames of the trials.
+  /// Plan of the session without recording, physical measures and their limits. Only the frames of the trials are
+  /// recorded, so the physical measures cannot be repeated.
   Plan plan;
   std::vector<std::string> warnings;
 };

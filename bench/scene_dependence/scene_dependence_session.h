@@ -30,11 +30,11 @@ struct SceneDependenceSession {
 /// Returns the content of scene-dependence.json, which is also the output of the command.
 [[nodiscard]] Json scene_dependence_json(const SceneDependence& found, const SceneDependenceTask& task);
 
-/// Judges the tolerance as the only demand, by simultaneous 95 % intervals, for the size with the largest deviation.
+/// Judges the only demand, the tolerance, at the size with the largest deviation, by simultaneous 95 % intervals.
 /// The limits of the plan apply to a curve and are not judged; the reason in the verdict states this.
 [[nodiscard]] Verdict verdict_on(const SceneDependence& found, const LimitsPlan& limits);
 
-/// Runs plan_scene_dependence() into a session folder: scene-dependence.json, measures.json with the ratios and both
+/// Runs plan_scene_dependence() and writes a session: scene-dependence.json, measures.json with the ratios and both
 /// pictures, verdict, report. Errors: those of plan_scene_dependence(). After an error before the first frame there is
 /// no folder. After a later error the folder is marked interrupted.
 [[nodiscard]] Result<SceneDependenceSession> measure_scene_dependence_session(const LoadedPlan& loaded,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Comparison of an observer that has an eye with all quoted figures of people: detection, acuity, reading, microscan.
+// Comparison of an observer with an eye with all quoted results of people: detection, acuity, reading, microscan.
 #pragma once
 
 #include <cstdint>

@@ -29,11 +29,11 @@ struct EyeTemplates {
 /// + kappa^2 c^2 G_ii), kappa = contrast_noise. Immutable, thread-safe.
 class EyeNoise {
  public:
-  /// Largest share of the variance of a score that may be missing in the draws. For comparison, the scores of two small
-  /// triangles differ by about 1e-2 of their variance.
+  /// Largest share of the variance of a score that may be missing in the draws. For comparison: the difference between
+  /// the scores of two small triangles has about 1e-2 of the variance of one score.
   static constexpr double max_left_out = 3e-4;
 
-  /// `power`: H^2 times the square of the display's transfer, in cycles per displayed sample.
+  /// `power`: H^2 times the square of the display's transfer; its frequencies are in cycles per displayed sample.
   EyeNoise(EyeTemplates templates, const FilterTable& power);
 
   /// Returns G of two templates. Indices as in the bank.

@@ -57,12 +57,12 @@ class ScoreNoise {
   void copy_factor(std::size_t index, std::span<float> numbers) const;
   /// Multiplies numbers by the shares of eye and white noise in the total. No effect without an eye.
   void weigh(const ScoreNoiseLevels& levels, std::span<float> numbers) const;
-  /// Shares of eye and white noise in the variance of total noise 1.
+  /// Shares of eye and white noise in the variance of the noise, if this variance is scaled to 1.
   struct Shares {
     float eye = 1, white = 0;
   };
   [[nodiscard]] Shares shares(const ScoreNoiseLevels& levels) const;
-  /// Returns the variance of a score for total noise 1; 1 without an eye.
+  /// Returns the variance of a score for noise of variance 1; without an eye, the result is 1.
   [[nodiscard]] float variance(const Shares& shares, std::size_t index) const {
     return squares_.empty() ? 1 : shares.eye + shares.white * squares_[index];
   }

@@ -10,10 +10,10 @@
 
 namespace todbench {
 
-/// Returns one period at `per_unit` points per unit length; point (j, i) is at (i, j) / per_unit, periodic.
-/// Precondition: the edges are near the origin and form closed outlines, as returned by visible_edges(). The result
-/// equals the sum of PolygonImage::fine_image() over polygons that add up to the same picture. Precondition: per_unit *
-/// period > 2 band.
+/// Returns one period of the filtered picture at `per_unit` points per unit length; element (j, i) is the point
+/// (i, j) / per_unit. The result equals the sum of PolygonImage::fine_image() over polygons that add up to the picture.
+/// Preconditions: the edges are near the origin and form closed outlines, as returned by visible_edges(); per_unit is
+/// above 2 * band / period, with band and period of `filter`.
 [[nodiscard]] cv::Mat1d fine_step_image(std::span<const StepEdge> edges, const FilterTable& filter, int per_unit);
 
 }  // namespace todbench

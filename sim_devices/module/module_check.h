@@ -16,7 +16,7 @@ struct ModuleReport {
   bool network_cut = false;      ///< the module could not reach any other computer
   double latency_ms = 0;         ///< median time of twenty exchanges of 320 x 240 numbers
   bool linear = false;           ///< linearity_deviation below 1e-4
-  /// Largest |f(2 a - b / 2) - (2 f(a) - f(b) / 2)| without the part of f(0), relative to the largest output.
+  /// Largest |g(2 a - b / 2) - (2 g(a) - g(b) / 2)| with g = f - f(0), relative to the largest output of the module f.
   double linearity_deviation = 0;
   cv::Mat1f impulse_response;  ///< output for a 1 in the middle of zeros minus output for zeros: the central 9 x 9
   double impulse_sum = 0;      ///< sum of the whole response

@@ -15,8 +15,8 @@ namespace todbench {
 /// templates. For every patch the module receives two arrays. The first is <f8 with six numbers: size in displayed
 /// samples, displayed samples per pitch, contrast in kelvin, phase in x and y in samples, noise of the sensor in
 /// kelvin. The second is <f4 with the patch as the templates would receive it (seen_patch()). The module returns one
-/// score for each alternative, and the highest score determines the answer. There is no judge(): graded answers come
-/// from choose() and are 1 or 0. After a failure() every choice is made without scores. One thread at a time.
+/// score for each alternative, and the highest score determines the answer. judge() gives the answer of choose() the
+/// probability 1. After a failure() the answers are random. One thread at a time.
 [[nodiscard]] std::unique_ptr<Observer> module_observer(const TemplateObserverSpec& spec, Alternatives alternatives,
                                                         const ModulePlan& module,
                                                         std::function<void(std::string_view line)> on_error_line);

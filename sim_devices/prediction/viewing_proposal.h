@@ -17,7 +17,7 @@ inline constexpr double viewing_cost_percent = 1;
 /// Proposed zoom and distance.
 struct ViewingProposal {
   double stated_arcmin = 0;        ///< angle of a displayed sample at the stated display
-  double stated_cost_percent = 0;  ///< increase of S75 (75 % size) at the stated display over a large picture
+  double stated_cost_percent = 0;  ///< excess of S75 at the stated display over S75 of a large picture
   double least_arcmin = 0;         ///< smallest angle at which the cost is below viewing_cost_percent
   double zoom = 1;                 ///< smallest whole zoom at the stated distance
   double viewing_distance_m = 0;   ///< largest distance at the stated zoom

@@ -7,7 +7,7 @@
 namespace todbench {
 
 /// Returns the part of a shape within the square |x|, |y| <= half_width (Sutherland and Hodgman 1974). If the square
-/// separates parts of a concave shape, they stay joined along its edge without enclosed area.
+/// cuts a concave shape into several parts, lines along the edge of the square join the parts; they enclose no area.
 [[nodiscard]] Polygon clipped(const Polygon& shape, double half_width);
 
 /// Returns the integral of |y - from|^-3 over the points y of the shape outside the square |x|, |y| <= half_width, in

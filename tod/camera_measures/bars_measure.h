@@ -55,9 +55,9 @@ struct PlateBarsCtf {
 ///
 /// The contrast is the signal in the centres of the plate's rectangles minus the signal of the area that is more than 5
 /// pixels away from every cut-out. The contrast is corrected to first order for light that the optics spread farther:
-/// an MTF of 1 - a f at low frequencies f spreads a / (4 pi^2 r^3) to a distance r. The value a is measured at
-/// the edges of the rectangles (plate_edges()), and the spread light is summed over the drawing of the plate. The
-/// half-width of the interval of this correction is the whole correction, because a halo spreads light differently.
+/// optics with an MTF of 1 - a f at low frequencies f spread a / (4 pi^2 r^3) to a distance r. The value a is measured
+/// at the edges of the rectangles (plate_edges()), and the spread light is summed over the drawing of the plate. The
+/// half-width of the interval equals the correction itself, because a halo may spread light differently from this law.
 /// Halos wider than the squares reduce the contrast of squares and bars equally and are not part of the CTF.
 ///
 /// Standard deviation and bias are computed from 100 repetitions with simulated noise (`seed`) as large as the residual

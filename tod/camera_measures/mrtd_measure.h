@@ -31,8 +31,8 @@ struct MrtdOptions {
   /// Number of positions of the plate relative to the pixels, divided among the mountings; at least 5.
   int set_ups = 8;
   std::vector<Mounting> mountings{Mounting::identity};
-  double frequency_per_pitch = 0.25;  ///< the bars with the nearest frequency are stated
-  double spot_px = 3;                 ///< the spot with the nearest size is stated
+  double frequency_per_pitch = 0.25;  ///< requested; the result is that of the bars nearest in frequency
+  double spot_px = 3;                 ///< requested; the result is that of the spot nearest in size
   double pitch_mrad = 0;              ///< IFOV of a pixel
   double locating_k = 4;              ///< contrast at which the plate is located
   int registration_frames = 32;       ///< number of frames averaged to locate the plate

@@ -32,8 +32,8 @@ struct PlateGeometry {
   Estimate rotation_deg;        ///< rotation of the plate in the picture, clockwise
   Estimate keystone_x_percent;  ///< scale at the plate's right border minus scale at its left border, relative
   Estimate keystone_y_percent;  ///< scale at the plate's lower border minus scale at its upper border, relative
-  Estimate distortion_percent;  ///< k at the corner of the picture; positive: pincushion
-  double residual_px = 0;       ///< root mean square of a coordinate, with the degrees of freedom as divisor
+  Estimate distortion_percent;  ///< relative distortion at the corner of the picture; positive: pincushion
+  double residual_px = 0;       ///< root of the sum of squares of all coordinates / degrees of freedom
   double farthest_px = 0;       ///< largest distance of a triangle from the middle of the picture, in pixels along x
   double corner_px = 0;         ///< distance of the corner from the middle of the picture, in pixels along x
   std::vector<GeometryPlace> places;

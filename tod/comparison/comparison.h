@@ -57,9 +57,9 @@ struct ComparisonPoint {
   /// p value of the likelihood-ratio test of a common threshold. The statistic is divided by the variance inflation.
   /// With clusters, the p value is that of Student's t with the degrees of freedom of Welch and Satterthwaite.
   std::optional<double> p_difference{};
-  /// p value of two one-sided tests on the log ratio (Schuirmann 1987), with the spread of each side of `ratio_ci90`.
-  /// The value is below 0.05 if and only if this interval lies inside the margin. Empty if a side of the interval is
-  /// missing.
+  /// p value of two one-sided tests on the log ratio (Schuirmann 1987); standard errors from the two sides of
+  /// `ratio_ci90`. The value is below 0.05 if and only if this interval lies inside the margin. Empty if a side of the
+  /// interval is missing.
   std::optional<double> p_equivalence{};
   double margin_percent = 0;
   ComparisonVerdict verdict = ComparisonVerdict::inconclusive;

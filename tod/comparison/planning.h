@@ -23,8 +23,8 @@ struct ExpectedFit {
   double threshold = 0, slope = 0, trials = 0;
   double se_ln_threshold = 0;  ///< standard error from the information of the expected counts
 };
-/// Fits the expected counts. Errors: `invalid_input` (a level out of range, or expected answers without a threshold,
-/// with the verdict in the message).
+/// Fits the expected counts. Errors: `invalid_input` (a level out of range; or the expected answers have no threshold:
+/// the message then contains the verdict of the fit).
 [[nodiscard]] Result<ExpectedFit> expected_fit(std::span<const PlannedLevel> design, const FitOptions& options);
 
 /// Returns the design with sizes and trials of `totals` and the proportions of a psychometric function.

@@ -10,8 +10,8 @@ namespace todbench {
 /// Source of the position of the plate in a frame of a pass.
 enum class PlaceSource {
   triangles,  ///< position of the large triangles in this frame
-  /// Straight line as a function of device time, with the speed of the stage, through the mean position of the large
-  /// triangles.
+  /// Position that moves with device time on a straight line, at the speed of the translation stage. The line goes
+  /// through the mean position of the large triangles.
   stage,
 };
 inline constexpr std::array all_place_sources{PlaceSource::triangles, PlaceSource::stage};

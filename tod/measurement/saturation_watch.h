@@ -18,11 +18,11 @@ class SaturationWatch {
   /// `contrast_k`. Returns the number of triangle pixels that had the lowest or the highest count in at least one
   /// frame, without defective pixels.
   ///
-  /// The initial values are 0 and the full scale of the significant bits. A count becomes the lowest or the highest
-  /// count if several pixels had this count in every frame, noise changed the other pixels, and no pixel was beyond
-  /// this count. This count is then the limit of a temperature range, or of a camera with fewer bits than the format. A
-  /// pixel that had the lowest or the highest count in every frame is defective if it is outside the triangles, or if
-  /// the levels of the triangles are far from this count. A defective pixel is ignored until it changes.
+  /// The initial values are 0 and the full scale of the significant bits. A count becomes the new lowest or highest
+  /// count if several pixels had it in every frame, all other pixels varied with noise, and no pixel was beyond it. It
+  /// is then the limit of a temperature range, or of a camera with fewer bits than the format. A pixel that had the
+  /// lowest or the highest count in every frame is defective if it is outside the triangles, or if the levels of the
+  /// triangles are far from this count. A defective pixel is ignored until it changes.
   [[nodiscard]] int learn(const AveragedPicture& picture, const RadiometricScale& scale,
                           const TargetPlate& mounted_plate, const Registration& registration, double contrast_k);
   /// Returns the number of pixels in the window at the lowest or the highest count, without defective pixels.

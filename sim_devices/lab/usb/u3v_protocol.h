@@ -26,8 +26,8 @@ inline constexpr std::size_t bootstrap_size = 0x3000, camera_size = 0x100;
 inline constexpr std::uint64_t si_info = 0x0, si_control = 0x4, si_payload = 0x8, si_leader = 0x10, si_trailer = 0x14;
 inline constexpr std::size_t leader_size = 52, trailer_size = 32;
 
-// The camera's own registers. A client may write the registers from the pixel format up to the first register of the
-// sensor (reg_scale).
+// The camera's own registers. A client may write the registers from reg_pixel_format to the last one before the first
+// register of the sensor (reg_scale).
 inline constexpr std::uint64_t reg_width = 0x00, reg_height = 0x04, reg_offset_x = 0x08, reg_offset_y = 0x0C,
                                reg_pixel_format = 0x10, reg_largest_count = 0x14, reg_acquisition_mode = 0x18,
                                reg_acquisition = 0x1C, reg_period_us = 0x20, reg_ir_format = 0x24, reg_nuc_mode = 0x28,
