@@ -113,12 +113,16 @@ void take_value(PsychometricFit& fit, const RampInterval& value, double ln_of_su
 }
 
 void add_direction(RampOutcome& outcome, const RampFit& fit) {
-  const RampDifference found = fit.up_against_down();
-  const double percent = 100 * std::expm1(found.ln_up_over_down), limit = 100 * std::expm1(found.limit);
+  const auto found = fit.up_against_down();
+  if (!found) {
+    outcome.notes.emplace_back("the answers do not determine the difference of S75 between ramps up and down");
+    return;
+  }
+  const double percent = 100 * std::expm1(found->ln_up_over_down), limit = 100 * std::expm1(found->limit);
   const std::string sentence =
       fmt::format("S75 of ramps up and down differs by {:+.2f} %, chance allows {:.2f} %", percent, limit);
   outcome.notes.push_back(sentence);
-  if (!found.beyond()) return;
+  if (!found->beyond()) return;
   outcome.findings.push_back({.kind = FindingKind::ramp_direction,
                               .value = percent,
                               .limit = limit,

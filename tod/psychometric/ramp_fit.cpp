@@ -39,7 +39,7 @@ Result<void> RampFit::climb(Directions directions) {
   parameters_ = powers_ + (directions == Directions::apart ? 1 : 0);
   const auto n = static_cast<Eigen::Index>(parameters_);
   constexpr int most_steps = 50;
-  constexpr double longest = 0.2, precise = 1e-9, precise_in_errors = 1e-3;
+  constexpr double longest = 0.2, precise = 1e-9, precise_in_errors = 1e-3, singular = 1e-12;
   double share = 1, in_errors = 0;
   Eigen::VectorXd last = Eigen::VectorXd::Zero(n);
   for (int step = 0; step < most_steps; ++step) {
@@ -54,7 +54,7 @@ Result<void> RampFit::climb(Directions directions) {
       information += mean.derivative * mean.derivative / v * x * x.transpose();
     }
     const Eigen::LLT<Eigen::MatrixXd> factor(information);
-    if (factor.info() != Eigen::Success)
+    if (factor.info() != Eigen::Success || factor.rcond() < singular)
       return fail(ErrorCode::invalid_input, "fit over contrast: the answers do not determine the curve");
     Eigen::VectorXd change = share * factor.solve(score);
     if (change.dot(information * last) < -0.5 * last.dot(information * last)) {
@@ -120,9 +120,9 @@ RampValue RampFit::at(double delta_t_k) const {
           .variance = clustered_variance(all, parameters_, 0)};
 }
 
-RampDifference RampFit::up_against_down() const {
+std::optional<RampDifference> RampFit::up_against_down() const {
   RampFit apart = *this;
-  if (!apart.climb(Directions::apart)) return {};
+  if (!apart.climb(Directions::apart)) return std::nullopt;
   const ClusteredVariance found = clustered_variance(apart.scores(0), apart.parameters_, apart.powers_);
   RampDifference out{.ln_up_over_down = apart.value_[apart.powers_], .standard_error = std::sqrt(found.variance)};
   constexpr double false_alarm = 0.01;

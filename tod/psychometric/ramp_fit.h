@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,7 +30,7 @@ struct RampValue {
   ClusteredVariance variance;  ///< variance of ln S75, over set-ups
 };
 
-/// Difference of ln S75 between ramps up and down; all members are 0 if the fit failed.
+/// Difference of ln S75 between ramps up and down.
 struct RampDifference {
   double ln_up_over_down = 0, standard_error = 0;
   double limit = 0;  ///< critical value of |ln_up_over_down| at 1 %, two-sided
@@ -50,9 +51,9 @@ class RampFit {
   /// Returns the stretch in ln size at a contrast.
   [[nodiscard]] double stretch(double delta_t_k) const;
   /// Returns the difference of ln S75 between ramps up and down. The fit is repeated with an additional parameter,
-  /// which is added to ln S75 with the factor +1/2 for ramps up and -1/2 for ramps down. If this fit fails, all members
-  /// are 0.
-  [[nodiscard]] RampDifference up_against_down() const;
+  /// which is added to ln S75 with the factor +1/2 for ramps up and -1/2 for ramps down. Empty if the answers do not
+  /// determine this parameter, for example because all ramps had one direction.
+  [[nodiscard]] std::optional<RampDifference> up_against_down() const;
 
  private:
   enum class Directions { together, apart };

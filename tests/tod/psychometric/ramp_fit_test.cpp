@@ -80,12 +80,24 @@ TEST(RampFit, ADifferenceOfTheDirectionsIsFoundAndNoneIsNot) {
   const RampErrors lagging{.of_set_up = 0.01, .of_presentation = 0.01, .up_against_down = 0.03};
   const RampErrors even{.of_set_up = 0.01, .of_presentation = 0.01};
 
-  const RampDifference found = RampFit::of(answers_of(sensor, lagging, 3), surface)->up_against_down();
-  const RampDifference none = RampFit::of(answers_of(sensor, even, 3), surface)->up_against_down();
+  const auto found = RampFit::of(answers_of(sensor, lagging, 3), surface)->up_against_down();
+  const auto none = RampFit::of(answers_of(sensor, even, 3), surface)->up_against_down();
 
-  EXPECT_NEAR(found.ln_up_over_down, 0.03, 4 * found.standard_error);
-  EXPECT_TRUE(found.beyond());
-  EXPECT_FALSE(none.beyond());
+  ASSERT_TRUE(found && none);
+  EXPECT_NEAR(found->ln_up_over_down, 0.03, 4 * found->standard_error);
+  EXPECT_TRUE(found->beyond());
+  EXPECT_FALSE(none->beyond());
+}
+
+TEST(RampFit, RampsOfOneDirectionHaveNoDifference) {
+  const LogisticSensor sensor;
+  auto answers = answers_of(sensor, {.of_set_up = 0.01}, 3);
+  std::erase_if(answers, [](const RampAnswer& one) { return one.direction == RampDirection::up; });
+
+  const auto fit = RampFit::of(std::move(answers), surface_of(sensor, 20, 0.18));
+
+  ASSERT_TRUE(fit) << fit.error().message;
+  EXPECT_FALSE(fit->up_against_down());
 }
 
 TEST(RampFit, IntervalsCoverTheTruthAtContrastsThatAreNotThoseOfTheAnswers) {
