@@ -56,7 +56,7 @@ double contrast_bend(const ContrastNoise& noise, double delta_t_k) {
 }
 
 std::vector<double> contrasts_of_surface(const ContrastNoise& noise, double strongest_k, double weakest_k) {
-  constexpr double widest_step = 0.1, least_step = 1e-3;
+  constexpr double widest_step = 0.2, least_step = 1e-3;
   const double from = contrast_bend(noise, strongest_k), to = contrast_bend(noise, weakest_k);
   if (!(to - from > least_step)) return {strongest_k, weakest_k};
   const int steps = std::max(3, static_cast<int>(std::ceil((to - from) / widest_step)));

@@ -22,7 +22,7 @@ struct ContrastNoise {
 /// noise and sensor noise are equal. If the counts are fine enough, contrasts with the same u have the same function.
 [[nodiscard]] double contrast_bend(const ContrastNoise& noise, double delta_t_k);
 /// Returns contrasts, decreasing from `strongest_k` to `weakest_k`, at which tables describe the function. The steps
-/// are at most 0.1 in u.
+/// are at most 0.2 in u: ln_threshold() then agrees with a closed form within 0.1 %.
 [[nodiscard]] std::vector<double> contrasts_of_surface(const ContrastNoise& noise, double strongest_k,
                                                        double weakest_k);
 
