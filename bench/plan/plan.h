@@ -294,7 +294,7 @@ inline constexpr std::array all_pixel_areas{PixelArea::plate, PixelArea::frame};
 /// Rule by which a pixel is bad.
 enum class PixelRule {
   own,        ///< the keys pixels_response, pixels_offset and pixels_noisy
-  gbt_17444,  ///< GB/T 17444-2013: response below half of the mean, noise above twice the mean
+  gbt_17444,  ///< GB/T 17444-2013: response below half of the median, noise above twice the median
 };
 inline constexpr std::array all_pixel_rules{PixelRule::own, PixelRule::gbt_17444};
 /// Returns the name in plans, "own" or "gbt-17444".

@@ -18,8 +18,8 @@ namespace todbench {
 /// Options of measure_warm_up().
 struct WarmUpOptions {
   double duration_s = 600;         ///< duration of the observation, > 0
-  double start_s = 0;              ///< time from power-on to the first image; all times of the result are measured from
-                                   ///< power-on
+  double start_s = 0;              ///< time from a starting moment, for example power-on, to the first image; all times
+                                   ///< of the result are measured from this moment
   double frame_rate_hz = 0;        ///< frame rate that the camera states; 0: not stated
   double stable_k_per_min = 0.05;  ///< drift below which the level is stable, > 0
 };
