@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include "tod/schedule/adaptive_schedule.h"
@@ -173,6 +174,18 @@ ComparisonOptions comparison_options(const Plan& plan) {
   options.margin_percent = plan.limits.equivalence_margin_percent.value_or(options.margin_percent);
   options.fit = fit_options(plan);
   return options;
+}
+
+BadPixelRules bad_pixel_rules(const MeasuresPlan& measures) {
+  // Response below half of the mean, noise above twice the mean, no rule for the level. Medians stand for the means,
+  // because bad pixels change a mean.
+  if (measures.pixel_rule == PixelRule::gbt_17444)
+    return {.dead_responsivity = 0.5,
+            .strong_responsivity = false,
+            .noisy = 2,
+            .offset = std::numeric_limits<double>::max()};
+  return {
+      .dead_responsivity = measures.pixels_response, .noisy = measures.pixels_noisy, .offset = measures.pixels_offset};
 }
 
 Result<Accuracy> accuracy_of(const Plan& plan) {

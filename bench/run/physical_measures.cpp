@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "bench/devices/camera_settings.h"
 #include "bench/devices/plate_picture.h"
 #include "bench/plan/collimator.h"
+#include "bench/plan/plan_options.h"
 #include "bench/twin/module_chain.h"
 #include "bench/twin/simulated_responses.h"
 #include "sim_devices/sensor/effect_row.h"
@@ -82,13 +82,8 @@ std::optional<PixelOptions> pixel_options(const Plan& plan) {
   const MeasuresPlan& measures = plan.measures;
   if (!measures.pixels) return std::nullopt;
   PixelOptions options{.whole_frame = measures.pixels_area == PixelArea::frame, .rules = {}, .zones = {}};
-  options.rules.bad = {
-      .dead_responsivity = measures.pixels_response, .noisy = measures.pixels_noisy, .offset = measures.pixels_offset};
+  options.rules.bad = bad_pixel_rules(measures);
   options.rules.blinking = measures.pixels_blinking;
-  // GB/T 17444-2013 as known from abstracts: response below half of the mean, noise above twice the mean, no rule for
-  // the level. Medians stand for the means, because bad pixels change a mean.
-  if (measures.pixel_rule == PixelRule::gbt_17444)
-    options.rules.bad = {.dead_responsivity = 0.5, .noisy = 2, .offset = std::numeric_limits<double>::max()};
   for (const ZoneLimit& zone : plan.limits.zones) {
     if (zone.name != whole_frame_zone)
       options.zones.push_back({zone.name, zone.area[0], zone.area[1], zone.area[2], zone.area[3]});

@@ -45,6 +45,11 @@ void count_clusters(BadPixels& found) {
 
 }  // namespace
 
+bool responds_badly(double relative_responsivity, const BadPixelRules& rules) {
+  return relative_responsivity < 1 - rules.dead_responsivity ||
+         (rules.strong_responsivity && relative_responsivity > 1 + rules.dead_responsivity);
+}
+
 Result<BadPixels> bad_pixels(const PixelProperties& pixels, const BadPixelRules& rules) {
   cv::Size size;
   for (const cv::Mat1d* picture : {&pixels.responsivity, &pixels.offset, &pixels.noise_sd}) {
@@ -60,7 +65,9 @@ Result<BadPixels> bad_pixels(const PixelProperties& pixels, const BadPixelRules&
   if (!pixels.responsivity.empty()) {
     const double median = median_of(pixels.responsivity);
     if (median == 0) return fail(ErrorCode::invalid_input, "half of the pixels do not respond at all");
-    found.dead = cv::abs(pixels.responsivity / median - 1) > rules.dead_responsivity;
+    std::ranges::transform(pixels.responsivity, found.dead.begin(), [&](double value) -> uchar {
+      return responds_badly(value / median, rules) ? 255 : 0;
+    });
   }
   if (!pixels.noise_sd.empty()) {
     const double median = median_of(pixels.noise_sd);

@@ -12,6 +12,7 @@ namespace todbench {
 /// limits explicitly.
 struct BadPixelRules {
   double dead_responsivity = 0.25;  ///< limit of |responsivity / median - 1|
+  bool strong_responsivity = true;  ///< a responsivity above the median can be bad, too; false: only one below it
   double noisy = 3;                 ///< limit of the temporal standard deviation, as a multiple of the median
   double offset = 5;                ///< limit of |offset - median|, as a multiple of 1.4826 x median deviation
 };
@@ -32,6 +33,9 @@ struct BadPixels {
   int largest_cluster = 0;  ///< number of pixels; 1 if no bad pixels touch, 0 without bad pixels
   double operability_percent = 100;
 };
+
+/// Returns whether the responsivity of a pixel, relative to the median, is bad. False for NaN.
+[[nodiscard]] bool responds_badly(double relative_responsivity, const BadPixelRules& rules);
 
 /// Finds bad pixels. Errors: `invalid_input` (no picture, pictures of different sizes, a value that is not finite, or a
 /// median of 0 although a rule divides by the median).

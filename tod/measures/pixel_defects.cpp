@@ -92,7 +92,7 @@ double expected_constant(double noise_counts, int frames, double pixels) {
   return pixels * std::pow(std::erf(0.5 / (noise_counts * std::numbers::sqrt2)), frames);
 }
 
-cv::Mat1b unresponsive_pixels(const cv::Mat1d& responsivity, double limit, int& tested) {
+cv::Mat1b unresponsive_pixels(const cv::Mat1d& responsivity, const BadPixelRules& rules, int& tested) {
   cv::Mat1b out = cv::Mat1b::zeros(responsivity.size());
   std::vector<double> known;
   for (const double value : responsivity)
@@ -102,8 +102,7 @@ cv::Mat1b unresponsive_pixels(const cv::Mat1d& responsivity, double limit, int& 
   const double middle = median(known);
   if (middle == 0) return out;
   for (int y = 0; y < out.rows; ++y) {
-    for (int x = 0; x < out.cols; ++x)
-      out(y, x) = std::abs(responsivity(y, x) / middle - 1) > limit ? 255 : 0;  // false for NaN
+    for (int x = 0; x < out.cols; ++x) out(y, x) = responds_badly(responsivity(y, x) / middle, rules) ? 255 : 0;
   }
   return out;
 }
@@ -166,7 +165,7 @@ Result<PixelDefects> pixel_defects(std::span<const cv::Mat1f> frames, const Pixe
     out.not_tested.emplace_back("stuck pixels: too few frames for the coarse scale");
   if (!scene.responsivity.empty())
     map(PixelDefect::unresponsive) =
-        unresponsive_pixels(scene.responsivity, rules.bad.dead_responsivity, out.response_tested);
+        unresponsive_pixels(scene.responsivity, rules.bad, out.response_tested);
   if (out.frames >= least_frames_blinking) {
     map(PixelDefect::blinking) = blinking_pixels(series, size, {rules.blinking, rules.levels, noise});
   } else {

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "bench/plan/plan_options.h"
 #include "tests/bench/run/pixel_coverage.h"
 #include "tod/camera_measures/pixel_measure.h"
 
@@ -93,6 +94,24 @@ TEST(PixelDefects, ADeadPixelIsFoundByItsResponseWhereThatIsKnown) {
   EXPECT_EQ(found->response_tested, 64);
   EXPECT_EQ(cv::countNonZero(found->of(PixelDefect::unresponsive)), 1);
   EXPECT_EQ(found->of(PixelDefect::unresponsive)(12, 13), 255);
+}
+
+TEST(PixelDefects, OfTheChineseStandardAStrongResponseIsNoDefect) {
+  const auto frames = white_frames(48);
+  PixelScene scene;
+  scene.responsivity = cv::Mat1d::ones(32, 48);
+  scene.responsivity(12, 13) = 1.6, scene.responsivity(13, 13) = 0.49, scene.responsivity(14, 13) = 0.51;
+  MeasuresPlan measures;
+  const PixelDefectRules own{.bad = bad_pixel_rules(measures)};
+  measures.pixel_rule = PixelRule::gbt_17444;
+  const PixelDefectRules standard{.bad = bad_pixel_rules(measures)};
+
+  const auto by_own = pixel_defects(frames, scene, own), by_standard = pixel_defects(frames, scene, standard);
+
+  ASSERT_TRUE(by_own && by_standard);
+  EXPECT_EQ(cv::countNonZero(by_own->of(PixelDefect::unresponsive)), 3);
+  EXPECT_EQ(cv::countNonZero(by_standard->of(PixelDefect::unresponsive)), 1);
+  EXPECT_EQ(by_standard->of(PixelDefect::unresponsive)(13, 13), 255);
 }
 
 TEST(PixelDefects, WhatFramesCannotShowIsSaid) {
