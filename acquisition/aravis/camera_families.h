@@ -47,7 +47,7 @@ struct CameraFamily {
 /// something are excluded.
 [[nodiscard]] std::vector<std::string> correction_commands(const std::vector<std::string>& commands);
 
-/// Returns the enumerations that control the time of corrections according to their names.
+/// Returns the features that select when the camera corrects itself. They are recognised by their names.
 [[nodiscard]] std::vector<std::string> correction_modes(const std::vector<std::string>& enumerations);
 
 /// Returns the entry of an enumeration of correction_modes() that restricts corrections to commands: "Manual" before

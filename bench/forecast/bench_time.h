@@ -62,8 +62,8 @@ struct BenchTime {
 /// after an interruption; empty for runs of less than ten minutes and for a simulated scene.
 [[nodiscard]] std::string resume_remark(const Plan& plan, double bench_s);
 
-/// Returns the contrasts in K of the presentations of a set-up in the ramp of a plan: the response of a first-order
-/// black body to its set-points. A slow black body adds presentations at the end of the ramp down.
+/// Returns the contrasts in K that the presentations of one set-up have during a ramp. They are computed for a black
+/// body with a first-order response. A slow black body adds presentations at the end of the ramp down.
 [[nodiscard]] std::vector<double> ramp_contrasts_k(const Plan& plan);
 
 /// Returns the presentations of a constant schedule for bench_time(). For an adaptive schedule, returns the

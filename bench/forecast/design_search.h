@@ -19,8 +19,8 @@ struct DesignRequest {
   /// Half-width of the 95 % interval of S75 from the trials at every contrast. 19 of 20 runs do not exceed this
   /// half-width. Empty: the half-width of the plan as it is.
   std::optional<double> half_width_percent{};
-  /// If true, the design decides every limit on an acuity for a camera like the simulated sensor with a probability of
-  /// 95 %; `half_width_percent` is not used. The half-width at every contrast is at most 10 %, and at most a third of
+  /// If true, every limit on an acuity is decided with a probability of 95 % if the camera equals the simulated sensor.
+  /// `half_width_percent` is then not used. The half-width at every contrast is at most 10 %, and at most a third of
   /// the equivalence margin if the plan states one.
   bool decide = false;
 };

@@ -15,10 +15,10 @@ struct TimePrediction {
   double measuring_s = 0;   ///< computing time for a camera, without bench time (bench/forecast/bench_time.h)
 };
 
-/// Measures the time of each kind of work once with the plan's sensor, plates and observer (a picture, a frame, a
-/// registration, a contrast, the decisions of each plate, a size of the direct estimate of each contrast). Multiplies
-/// each time by the number of repetitions in the plan. Takes a few tenths of a second. Errors: the plate is not found
-/// in its own simulated picture, an observer that cannot be prepared; `interrupted`.
+/// Measures the time of each kind of work once: a picture, a frame, a registration, a contrast, the decisions of each
+/// plate, and one size of the direct estimate at each contrast. Each time is multiplied by its number of repetitions in
+/// the plan. Takes a few tenths of a second. Errors: the plate is not found in its own simulated picture; the observer
+/// cannot be prepared; `interrupted`.
 [[nodiscard]] Result<TimePrediction> predict_time(const Plan& plan, const ExperimentInputs& inputs,
                                                   std::stop_token stop = {});
 

@@ -356,7 +356,7 @@ struct MeasuresPlan {
   double mtf_delta_t_k = CameraMeasuresOptions{}.mtf_delta_t_k;
   /// Frames averaged for the MTF.
   int mtf_frames = CameraMeasuresOptions{}.mtf_frames;
-  /// Frequency at which the MTF is reported and limited, in cycles per pixel pitch.
+  /// Frequency in cycles per pixel pitch. The MTF at this frequency is reported and compared with the limit.
   double mtf_frequency_per_pitch = CameraMeasuresOptions{}.mtf_frequency_per_pitch;
   /// Measures the CTF along both axes from the bars of ctf_plate.
   bool ctf = false;
@@ -366,7 +366,7 @@ struct MeasuresPlan {
   double ctf_delta_t_k = CameraMeasuresOptions{}.ctf_delta_t_k;
   /// Frames averaged for the CTF.
   int ctf_frames = CameraMeasuresOptions{}.ctf_frames;
-  /// Frequency in cycles per pixel pitch. The group of bars nearest to it is reported and limited.
+  /// Frequency in cycles per pixel pitch. The group of bars nearest to it is reported and compared with the limit.
   double ctf_frequency_per_pitch = CameraMeasuresOptions{}.ctf_frequency_per_pitch;
   /// Measures the size-of-source effect from the apertures and opaque spots of source_size_plate.
   bool source_size = false;
@@ -376,7 +376,7 @@ struct MeasuresPlan {
   double source_size_delta_t_k = CameraMeasuresOptions{}.source_delta_t_k;
   /// Frames averaged at the contrast. The same number is averaged without contrast before and after.
   int source_size_frames = CameraMeasuresOptions{}.source_frames;
-  /// Side of the square source whose loss is reported and limited.
+  /// Side of the square source whose loss is reported and compared with the limit.
   double source_size_px = CameraMeasuresOptions{}.source_size_px;
   /// Measures accuracy, non-uniformity and repeatability over absolute temperatures of the black body.
   bool absolute = false;
@@ -411,9 +411,9 @@ struct MeasuresPlan {
   int mrtd_set_ups = MrtdOptions{}.set_ups;
   /// Frames of each contrast and set-up that are kept for people to judge; 0: none.
   int mrtd_kept_frames = MrtdOptions{}.kept_frames;
-  /// Frequency in cycles per pixel pitch. The bars nearest to it are reported and limited.
+  /// Frequency in cycles per pixel pitch. The bars nearest to it are reported and compared with the limit.
   double mrtd_frequency_per_pitch = MrtdOptions{}.frequency_per_pitch;
-  /// Side of a spot. The spot nearest to it is reported and limited.
+  /// Side of a spot. The spot nearest to it is reported and compared with the limit.
   double mdtd_size_px = MrtdOptions{}.spot_px;
   bool operator==(const MeasuresPlan&) const = default;
 

@@ -13,7 +13,7 @@ namespace todbench {
 /// Requires for a ramp: instruments or a scene, graded answers with the function of the twin, and at least five
 /// set-ups.
 [[nodiscard]] ValueMistakes check_schedule_kind(const Plan& plan, std::size_t row);
-/// Requires for a ramp: a rate above 0.
+/// Checks that the rate of a ramp is above 0.
 [[nodiscard]] ValueMistakes check_ramp_rate(const Plan& plan, std::size_t row);
 /// Requires for a ramp: a stated value.
 [[nodiscard]] ValueMistakes check_ramp_from(const Plan& plan, std::size_t row);

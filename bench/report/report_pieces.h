@@ -26,7 +26,7 @@ inline constexpr std::string_view one_sided_note =
 [[nodiscard]] std::string_view in_words(FitVerdict verdict);
 [[nodiscard]] std::string_view in_words(Mounting mounting);
 [[nodiscard]] std::string_view in_words(Effect effect);
-/// Return whether a verdict is good, bad or open for the reader.
+/// Return whether a verdict is presented as good, as bad or as undecided.
 [[nodiscard]] Mood mood_of(VerdictKind verdict);
 [[nodiscard]] Mood mood_of(ComparisonVerdict verdict);
 

@@ -41,7 +41,7 @@ struct StoredCurves {
 /// Parses a record. Errors: from_json().
 [[nodiscard]] Result<StoredCurves> curves_from(const Json& record);
 
-/// Returns every field of a comparison. The keys include the keys of comparison_json(). Errors: json_of().
+/// Returns all fields of a comparison, including those of comparison_json(). Errors: those of json_of().
 [[nodiscard]] Result<Json> comparison_record(const Comparison& comparison);
 /// Parses a record. Errors: from_json().
 [[nodiscard]] Result<Comparison> comparison_from(const Json& record);

@@ -167,7 +167,7 @@ template <typename Value>
 inline constexpr bool is_map = false;
 template <typename Value>
 inline constexpr bool is_map<std::map<std::string, Value>> = true;
-/// Type whose values are written as the words of to_string(): an enumeration, or a class whose values have names.
+/// Type that is written to JSON as the result of to_string(): an enumeration, or a class with named values.
 template <typename Value>
 concept Word = std::is_enum_v<Value> ||(std::is_class_v<Value>&& requires(const Value& value) {
   { to_string(value) } -> std::same_as<std::string_view>;

@@ -48,8 +48,8 @@ class CameraSurrogate {
   [[nodiscard]] std::optional<CameraHalo> halo() const;
   /// Returns whether the frames do not confirm the function and the response: refused(), unseen() or a halo().
   [[nodiscard]] bool unconfirmed() const { return refused() || unseen() || halo(); }
-  /// Returns the largest magnitude of ln (estimated response / response of the twin) over the plates; at least the
-  /// share of halo().
+  /// Returns the largest magnitude of ln (estimated response / response of the twin) over the plates. If halo() has a
+  /// share, the result is at least this share.
   [[nodiscard]] double response_shift() const;
   /// Returns the record of the estimate; empty if no set-up could be evaluated.
   [[nodiscard]] std::optional<CameraOpticsRecord> record() const;

@@ -11,9 +11,9 @@
 
 namespace todbench {
 
-/// Returns the share of the variance of the dance that remains between pictures, 0 to 1. Angles of arrival t apart have
-/// the correlation exp(-t / `turbulence_correlation_ms`) and are averaged over exposure and time constant. The rest of
-/// the variance is blur within the picture. Returns 0 if the sensor uses the long-exposure model.
+/// Returns the share of the variance of the image motion that remains between pictures, 0 to 1. The rest is blur within
+/// a picture. Displacements at a time difference t have the correlation exp(-t / `turbulence_correlation_ms`) and are
+/// averaged over exposure and time constant. Returns 0 if the sensor uses the long-exposure model.
 [[nodiscard]] double dance_share(const SensorSpec& spec);
 /// Returns the weight of the tilt that is removed from the long exposure: 1 in the near field (aperture >=
 /// sqrt(wavelength x path length)), otherwise 1/2 (Fried 1966); 0 without turbulence.

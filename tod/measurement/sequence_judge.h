@@ -22,8 +22,8 @@ enum class SequenceObserver {
   /// Averages all frames and judges the mean at the target's position in the middle of the pass: persistence without
   /// pursuit.
   static_sum,
-  /// Combines all frames into one picture on a grid twice as fine and judges this picture: dynamic super-resolution of
-  /// a known motion (super_resolve()). The position of the target in each frame is known.
+  /// Combines all frames into one picture with twice the sampling rate, using the known position of the target in each
+  /// frame (super_resolve()). The observer evaluates this picture.
   super_resolution,
 };
 inline constexpr std::array all_sequence_observers{SequenceObserver::single_frame, SequenceObserver::tracking_sum,

@@ -65,9 +65,8 @@ Result<BadPixels> bad_pixels(const PixelProperties& pixels, const BadPixelRules&
   if (!pixels.responsivity.empty()) {
     const double median = median_of(pixels.responsivity);
     if (median == 0) return fail(ErrorCode::invalid_input, "half of the pixels do not respond at all");
-    std::ranges::transform(pixels.responsivity, found.dead.begin(), [&](double value) -> uchar {
-      return responds_badly(value / median, rules) ? 255 : 0;
-    });
+    std::ranges::transform(pixels.responsivity, found.dead.begin(),
+                           [&](double value) -> uchar { return responds_badly(value / median, rules) ? 255 : 0; });
   }
   if (!pixels.noise_sd.empty()) {
     const double median = median_of(pixels.noise_sd);

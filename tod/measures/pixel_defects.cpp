@@ -164,8 +164,7 @@ Result<PixelDefects> pixel_defects(std::span<const cv::Mat1f> frames, const Pixe
   else
     out.not_tested.emplace_back("stuck pixels: too few frames for the coarse scale");
   if (!scene.responsivity.empty())
-    map(PixelDefect::unresponsive) =
-        unresponsive_pixels(scene.responsivity, rules.bad, out.response_tested);
+    map(PixelDefect::unresponsive) = unresponsive_pixels(scene.responsivity, rules.bad, out.response_tested);
   if (out.frames >= least_frames_blinking) {
     map(PixelDefect::blinking) = blinking_pixels(series, size, {rules.blinking, rules.levels, noise});
   } else {

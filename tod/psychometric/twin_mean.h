@@ -19,9 +19,9 @@ inline constexpr std::size_t twin_size = 0, twin_slope = 1, twin_bend = 2, twin_
 /// Returns the largest lapse at which the table contains the size with 75 % correct answers; at most max_free_lapse.
 [[nodiscard]] double largest_twin_lapse(const TwinShape& shape);
 
-/// Mean of an answer: mu(S) = 1/4 + r (F(c + k d + e d^2) - 1/4) with d = ln S - ln S75 and r = 1 - lapse / (3/4). F is
-/// the function of the twin, k the slope ratio, e the bend. The value of c is given by F(c) = 1/4 + 1/2 / r. Therefore
-/// mu(S75) = 3/4 for every lapse. The shape must outlive the object.
+/// Expected proportion correct mu(S) = 1/4 + r (F(c + k d + e d^2) - 1/4). Here d = ln S - ln S75, r = 1 - lapse /
+/// (3/4), F: function of the twin, k: slope ratio, e: bend. The constant c solves F(c) = 1/4 + 1/2 / r, so that mu(S75)
+/// = 3/4 for every lapse. The argument `shape` must outlive the object.
 class TwinMean {
  public:
   TwinMean(const TwinShape& shape, const TwinPlace& place);

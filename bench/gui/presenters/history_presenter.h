@@ -36,7 +36,7 @@ class HistoryPresenter final : public QObject {
  public:
   explicit HistoryPresenter(std::filesystem::path index, QObject* parent = nullptr);
 
-  /// Adds the sessions with a camera in a folder and its subfolders, and reads the index again.
+  /// Searches a folder and its subfolders, adds the sessions of cameras, and reads the index again.
   void add_sessions(const std::filesystem::path& folder);
   /// Reads the index again; changed() follows.
   void refresh();
