@@ -34,7 +34,7 @@ struct RampComparison {
                                             ///< phases of the plan
 };
 
-/// Compares a ramp with settled contrasts; empty for other plans. Errors: predict_plan().
+/// Compares a ramp with settled contrasts; empty for other plans. Errors: those of predict_plan().
 [[nodiscard]] Result<std::optional<RampComparison>> compare_ramp(const Plan& plan, const ExperimentInputs& inputs);
 
 /// Returns a sentence if settled contrasts are as fast as the ramp of a plan, or if the rate of the ramp is too high

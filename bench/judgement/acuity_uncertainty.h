@@ -75,7 +75,7 @@ struct CurveUncertainty {
 
 /// Returns the expanded intervals; empty if the plan has no budget. `plan.seed` seeds the Monte Carlo check.
 /// `source_loss`: relative loss of contrast by the size-of-source effect at the triangles that measure the contrast;
-/// empty: not measured. Errors: combined().
+/// empty: not measured. Errors: those of combined().
 [[nodiscard]] Result<std::optional<CurveUncertainty>> curve_uncertainty(const Plan& plan, const TodCurve& curve,
                                                                         std::span<const Presentation> presentations,
                                                                         const std::optional<Comparison>& comparison,

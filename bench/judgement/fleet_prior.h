@@ -50,7 +50,7 @@ struct FleetRisks {
   double consumer_risk = 0, producer_risk = 0;
   double consumer_risk_most = 0, producer_risk_most = 0;
 };
-/// Computes the risks. Errors: global_risks().
+/// Computes the risks. Errors: those of global_risks().
 [[nodiscard]] Result<FleetRisks> fleet_risks(const FleetPrior& prior, const MeasuredValue& measured,
                                              const ToleranceLimits& tolerance, const ToleranceLimits& acceptance);
 

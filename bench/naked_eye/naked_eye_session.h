@@ -23,7 +23,7 @@ inline constexpr std::string_view naked_eye_comparison_name = "naked_eye_compari
 /// Session with its pictures and answers. Used by one thread at a time.
 class NakedEyeSession {
  public:
-  /// Computes the prediction, and writes task and prediction into a new folder. Errors: predict_naked_eye();
+  /// Computes the prediction, and writes task and prediction into a new folder. Errors: those of predict_naked_eye();
   /// `invalid_input` if the folder exists; `io` with the path.
   [[nodiscard]] static Result<NakedEyeSession> begin(const NakedEyeTask& task, const std::filesystem::path& folder,
                                                      int pictures, const std::stop_token& stop);

@@ -61,7 +61,7 @@ class LoadedPlan {
   /// Validates the plan and reads its parts with `find`. Errors: `invalid_input` about the key (validate(); part not
   /// found or invalid).
   [[nodiscard]] static Result<LoadedPlan> load(Plan plan, const ResourceFinder& find = find_resource);
-  /// Combines a plan with parts already read, which must be the parts that the plan names. Errors: validate().
+  /// Combines a plan with parts already read, which must be the parts that the plan names. Errors: those of validate().
   [[nodiscard]] static Result<LoadedPlan> of(Plan plan, PlanParts parts);
   /// Loads a different plan and reads only the parts that this plan does not have.
   [[nodiscard]] Result<LoadedPlan> with(Plan plan, const ResourceFinder& find = find_resource) const;

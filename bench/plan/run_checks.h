@@ -10,17 +10,17 @@
 
 namespace todbench {
 
-/// Requires for a ramp: instruments or a scene, graded answers with the function of the twin, and at least five
-/// set-ups.
+/// If the schedule is a ramp, requires instruments or a scene, graded answers with the function of the twin, and at
+/// least five set-ups.
 [[nodiscard]] ValueMistakes check_schedule_kind(const Plan& plan, std::size_t row);
 /// Checks that the rate of a ramp is above 0.
 [[nodiscard]] ValueMistakes check_ramp_rate(const Plan& plan, std::size_t row);
-/// Requires for a ramp: a stated value.
+/// Requires a stated value if the schedule is a ramp.
 [[nodiscard]] ValueMistakes check_ramp_from(const Plan& plan, std::size_t row);
-/// Requires for a ramp: a value nearer to 0 than from_delta_t_k, of the same sign, and all contrasts of the target
-/// between both values.
+/// If the schedule is a ramp, requires a value nearer to 0 than from_delta_t_k, of the same sign, and all contrasts
+/// of the target between both values.
 [[nodiscard]] ValueMistakes check_ramp_to(const Plan& plan, std::size_t row);
-/// Requires for a ramp: a stated value.
+/// Requires a stated value if the schedule is a ramp.
 [[nodiscard]] ValueMistakes check_contrast_lag(const Plan& plan, std::size_t row);
 /// Requires instruments or a scene, and graded answers with the function of the twin.
 [[nodiscard]] ValueMistakes check_settling_band(const Plan& plan, std::size_t row);

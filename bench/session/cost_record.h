@@ -9,7 +9,7 @@
 
 namespace todbench {
 
-/// Returns the output of `cost PLAN --json` and the content of cost.json. Errors: json_of().
+/// Returns the output of `cost PLAN --json` and the content of cost.json. Errors: those of json_of().
 [[nodiscard]] Result<Json> cost_json(const CostFrontier& frontier);
 /// Parses a record. Errors: `invalid_input` with the key (incomplete record, wrong type).
 [[nodiscard]] Result<CostFrontier> cost_from(const Json& record);

@@ -26,9 +26,9 @@ class JsonFields;
 /// Returns the list of effects in the JSON of curve and plan.
 [[nodiscard]] Json effects_json(const SensorPlan& plan);
 
-/// Returns every field of a curve, including counts per size. Errors: json_of().
+/// Returns every field of a curve, including counts per size. Errors: those of json_of().
 [[nodiscard]] Result<Json> curve_record(const TodCurve& curve);
-/// Parses a record. Errors: from_json().
+/// Parses a record. Errors: those of from_json().
 [[nodiscard]] Result<TodCurve> curve_from(const Json& record);
 
 /// Content of fits.json.
@@ -36,14 +36,14 @@ struct StoredCurves {
   std::optional<TodCurve> main;
   std::optional<TodCurve> twin;
 };
-/// Returns the content of fits.json. Errors: json_of().
+/// Returns the content of fits.json. Errors: those of json_of().
 [[nodiscard]] Result<Json> curves_record(const StoredCurves& curves);
-/// Parses a record. Errors: from_json().
+/// Parses a record. Errors: those of from_json().
 [[nodiscard]] Result<StoredCurves> curves_from(const Json& record);
 
 /// Returns all fields of a comparison, including those of comparison_json(). Errors: those of json_of().
 [[nodiscard]] Result<Json> comparison_record(const Comparison& comparison);
-/// Parses a record. Errors: from_json().
+/// Parses a record. Errors: those of from_json().
 [[nodiscard]] Result<Comparison> comparison_from(const Json& record);
 
 /// Describes the key "effects" of a record, with the list of effects_json().

@@ -142,9 +142,9 @@ struct Provenance {
 /// Returns the current time as "2026-01-31T12:34:56Z".
 [[nodiscard]] std::string utc_now();
 
-/// Returns the content of provenance.json. Errors: json_of().
+/// Returns the content of provenance.json. Errors: those of json_of().
 [[nodiscard]] Result<Json> provenance_json(const Provenance& provenance);
-/// Parses a record. Errors: from_json().
+/// Parses a record. Errors: those of from_json().
 [[nodiscard]] Result<Provenance> provenance_from(const Json& json);
 
 }  // namespace todbench

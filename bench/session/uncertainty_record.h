@@ -8,9 +8,9 @@
 
 namespace todbench {
 
-/// Returns the content of uncertainty.json. Errors: json_of().
+/// Returns the content of uncertainty.json. Errors: those of json_of().
 [[nodiscard]] Result<Json> uncertainty_record(const CurveUncertainty& uncertainty);
-/// Parses a record. Errors: from_json().
+/// Parses a record. Errors: those of from_json().
 [[nodiscard]] Result<CurveUncertainty> uncertainty_from(const Json& record);
 
 /// Adds the expanded intervals to the points of curve_json(), and the complete record as "uncertainty".
