@@ -60,10 +60,10 @@ struct DisplayLevels {
 /// Returns the levels for `contrast`, a fraction of the span from -1 to 1.
 [[nodiscard]] DisplayLevels display_levels(double contrast, const DisplayTone& tone);
 
-/// Creates the target together with the program that shows its pictures. First shows a uniform picture at half luminance.
-/// Errors, before a plate is drawn: `invalid_input` (a centred plate does not fit on the display, a contrast cannot be
-/// shown, or the picture is larger than the screen), `not_found` (the program cannot be started, or ends because there
-/// is no screen); otherwise the message of the program.
+/// Creates the target together with the program that shows its pictures. First shows a uniform picture at half
+/// luminance. Errors, before a plate is drawn: `invalid_input` (a centred plate does not fit on the display, a contrast
+/// cannot be shown, or the picture is larger than the screen), `not_found` (the program cannot be started, or ends
+/// because there is no screen); otherwise the message of the program.
 [[nodiscard]] Result<std::unique_ptr<Target>> open_display_target(DisplayTargetOptions options,
                                                                   const std::string& command);
 
