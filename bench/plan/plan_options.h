@@ -70,7 +70,6 @@ inline constexpr int least_graded_presentations = 8;
                                           std::optional<double> delta_t_k = std::nullopt);
 /// Returns the options with the equivalence margin of the limits; 10 % if the plan has none.
 [[nodiscard]] ComparisonOptions comparison_options(const Plan& plan);
-
 /// Returns the limits of bad pixels: the keys of the plan, or the rule of GB/T 17444-2013 as known from abstracts.
 [[nodiscard]] BadPixelRules bad_pixel_rules(const MeasuresPlan& measures);
 /// Returns the named accuracy with the tolerance of the plan. Half of the tolerance is the allowed standard error of

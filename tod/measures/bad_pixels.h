@@ -12,7 +12,7 @@ namespace todbench {
 /// limits explicitly.
 struct BadPixelRules {
   double dead_responsivity = 0.25;  ///< limit of |responsivity / median - 1|
-  bool strong_responsivity = true;  ///< a responsivity above the median can be bad, too; false: only one below it
+  bool strong_responsivity = true;  ///< true: the limit applies on both sides of the median; false: only below it
   double noisy = 3;                 ///< limit of the temporal standard deviation, as a multiple of the median
   double offset = 5;                ///< limit of |offset - median|, as a multiple of 1.4826 x median deviation
 };
