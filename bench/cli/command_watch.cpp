@@ -139,7 +139,8 @@ int run_watch(Console& console, const WatchArguments& arguments, const std::stop
 void add_watch_command(CLI::App& app, Program& program) {
   auto* command = app.add_subcommand(
       "watch",
-      "observes a camera that looks at a uniform scene from power-on: first image, drift of level, pattern and noise");
+      "observes a camera that warms up before a uniform scene: first image, drift of level, pattern and noise, with "
+      "times from the start of the command");
   auto a = std::make_shared<WatchArguments>();
   command->add_option("CAMERA", a->camera, "camera id, as listed by todbench devices; awaited if it is absent")
       ->required();

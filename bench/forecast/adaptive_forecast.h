@@ -24,7 +24,8 @@ struct AdaptiveForecast {
 /// presentations (graded answers of few set-ups), or `scatter_of_binary_error`. The error of the measured contrast
 /// comes from simulated triangles (simulated_contrast_half_width()).
 ///
-/// `trials` is the mean over the runs. The intervals are those of the run with the median number of presentations.
+/// `trials` is the mean over the runs. The intervals are those of the run with the median number of presentations. A
+/// contrast whose interval becomes narrow enough in at least half of the runs has the requested half-width.
 [[nodiscard]] AdaptiveForecast adaptive_forecast(const std::vector<ContrastPrediction>& constant, const Plan& plan,
                                                  const ExperimentInputs& inputs);
 
