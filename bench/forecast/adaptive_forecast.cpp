@@ -71,18 +71,14 @@ double ratio_over_set_ups(const ContrastCourse& course) {
   return std::sqrt(std::max(0.0, squares - sum * sum / count) / (count - 1));
 }
 
-/// The same over presentations. The largest of three variances is used (clustered_variance.h), which scatters less than
-/// each of them: 0.43 / sqrt(presentations) in eight runs of a plan of 2 % with 10 to 25 presentations.
+/// The same over presentations.
 double ratio_over_presentations(const ContrastCourse& course) {
-  constexpr double of_largest = 0.61;  // 0.43 over the 1 / sqrt(2 presentations) of chi-square
-  return std::sqrt(1 + of_largest * (course.squares / course.presentations - 1));
+  return std::sqrt(1 + scatter_of_largest * (course.squares / course.presentations - 1));
 }
 
 double error_ratio(const ContrastCourse& course, const ContrastPrediction& expected, AnswerKind answers) {
   if (answers == AnswerKind::binary) return std::exp(scatter_of_binary_error * course.stream.sub(1).normal(0));
-  const auto set_ups = std::ranges::count_if(course.shown, [](int n) { return n > 0; });
-  const bool over_set_ups = *expected.degrees_of_freedom == static_cast<double>(set_ups - 1);  // graded_freedom()
-  return over_set_ups ? ratio_over_set_ups(course) : ratio_over_presentations(course);
+  return expected.over_set_ups ? ratio_over_set_ups(course) : ratio_over_presentations(course);
 }
 
 class Simulation {

@@ -541,7 +541,7 @@ std::vector<std::string> in_words(const BestDesign& found) {
   if (found.ramp) out.push_back(in_words(*found.ramp, best));
   const bool by_presentations =
       kind != ScheduleKind::adaptive && std::ranges::any_of(best.contrasts, [&](const ContrastPrediction& contrast) {
-        return contrast.degrees_of_freedom && *contrast.degrees_of_freedom != found.set_ups - 1;
+        return contrast.degrees_of_freedom && !contrast.over_set_ups;
       });
   if (by_presentations)
     out.emplace_back(

@@ -12,12 +12,6 @@ namespace {
 
 constexpr int cancelling_set_ups = 5;  // clustered_variance.h: least_set_ups
 
-/// Whether set-ups are the clusters of the interval, so that the mountings cancel the phases.
-bool by_set_ups(const GradedDesignFigures& design) {
-  const double set_ups = design.informative_set_ups > 0 ? design.informative_set_ups : design.set_ups;
-  return set_ups >= cancelling_set_ups;
-}
-
 /// Share of the variance of an answer at the threshold due to noise with this share of the deciding noise.
 double part_of_answers(double share) {
   constexpr double p = 0.75, seen = 2.0 / 3;  // p = 1/4 + 3/4 seen
@@ -31,7 +25,7 @@ double part_of_answers(double share) {
 /// Share of the variance of answers that the phases leave.
 double left_of_phases(const GradedDesignFigures& design, double phases) {
   // The variance left by evenly spread phases falls with the square of their number, that of answers with their number.
-  return by_set_ups(design) ? std::min(0.15, 0.048 / phases) : 0.28 / (1 + std::pow(design.noise / 0.13, 2));
+  return set_ups_are_clusters(design) ? std::min(0.15, 0.048 / phases) : 0.28 / (1 + std::pow(design.noise / 0.13, 2));
 }
 
 double phases_of(const GradedDesignFigures& design) {
@@ -118,9 +112,19 @@ int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s)
   return frame_choices[static_cast<std::size_t>(first - prices.begin())];
 }
 
+bool set_ups_are_clusters(const GradedDesignFigures& design) {
+  const double set_ups = design.informative_set_ups > 0 ? design.informative_set_ups : design.set_ups;
+  return set_ups >= cancelling_set_ups;
+}
+
+double two_way_freedom(const GradedDesignFigures& design) {
+  double clusters = design.informative_presentations > 0 ? design.informative_presentations : design.presentations;
+  if (design.informative_places > 0) clusters = std::min(clusters, design.informative_places);
+  return std::max(1.0, clusters - 1);
+}
+
 double graded_freedom(const GradedDesignFigures& design) {
-  if (by_set_ups(design)) return design.set_ups - 1;
-  return std::max(3.0, 0.7 * design.presentations - 0.5);
+  return set_ups_are_clusters(design) ? design.set_ups - 1 : two_way_freedom(design);
 }
 
 double likely_excess_of_error(double degrees_of_freedom) {
@@ -128,12 +132,13 @@ double likely_excess_of_error(double degrees_of_freedom) {
 }
 
 double graded_likely_excess(const GradedDesignFigures& design) {
-  return likely_excess_of_error(graded_freedom(design));
+  if (set_ups_are_clusters(design)) return likely_excess_of_error(graded_freedom(design));
+  return likely_excess_of_error(std::max(3.0, 0.7 * design.presentations - 0.5));
 }
 
 double graded_interval_factor(const GradedDesignFigures& design) {
   const double t = distribution::quantile(distribution::StudentsT(graded_freedom(design)), 0.975);
-  const double of_shared_detectors = by_set_ups(design) ? 1.06 : 1;
+  const double of_shared_detectors = set_ups_are_clusters(design) ? 1.06 : 1;
   return of_shared_detectors * t * graded_likely_excess(design);
 }
 

@@ -7,11 +7,15 @@
 #include <map>
 #include <numeric>
 
+#include "acquisition/base/distributions.h"
 #include "acquisition/base/normal.h"
+#include "bench/forecast/visit_order.h"
 #include "bench/plan/plan_options.h"
 #include "bench/twin/paired_comparison.h"
 #include "bench/twin/twin_shapes.h"
 #include "tod/comparison/planning.h"
+#include "tod/plate/test_pattern.h"
+#include "tod/psychometric/picture_places.h"
 
 namespace todbench {
 namespace {
@@ -20,9 +24,10 @@ namespace {
 // them within a quarter, except without noise, where its function has steps.
 constexpr double flattest = 2.5, steepest = 6;
 
-// Intervals of runs over that of the expected counts: 1.03 +- scatter_of_binary_error, because answers scatter and
-// trials of one presentation or place are slightly dependent. 95 % of runs stay below 1.2 (asked_uncertainty_study).
-constexpr double likely_excess = 1.2, mean_excess = 1.03;
+// Intervals of runs over that of the expected counts with Student's t: 1.017 +- scatter_of_binary_error, because
+// answers scatter and trials of one presentation or place are slightly dependent. 95 % of runs stay below 1.185
+// (asked_uncertainty_study: 1.03 and 1.2 of the normal interval, with 96 presentations).
+constexpr double likely_excess = 1.185, mean_excess = 1.017;
 
 /// Trials per size at one contrast.
 std::vector<Level> levels_of(const Plan& plan, const std::vector<TargetPlate>& plates) {
@@ -81,6 +86,44 @@ double effective_number(const std::vector<double>& information) {
   return squares > 0 ? std::pow(total(information), 2) / squares : 0;
 }
 
+/// Triangles of all set-ups with their places in the picture.
+std::vector<PlacedInformation> placed_information(const Plan& plan, const ExperimentInputs& inputs,
+                                                  const ContrastOutlook& outlook) {
+  const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
+  const double slope = std::clamp(outlook.weibull_slope, flattest, steepest);
+  const double pixels_per_mm = 1 / (plan.target.distance_m * inputs.sensor.ifov_mrad());
+  std::vector<Trial> triangles;
+  std::vector<PlacedInformation> out;
+  const std::vector<NumberedSetUp> set_ups = numbered_set_ups(plan, inputs.plates.size());
+  for (std::size_t i = 0; i < set_ups.size(); ++i) {
+    const TargetPlate& plate = inputs.plates[set_ups[i].plate];
+    const Mounting mounting = plan.target.mountings[set_ups[i].mounting];
+    for (const PlateTriangle& t : mounted(plate, mounting).triangles) {
+      Trial& trial = triangles.emplace_back();
+      trial.plate = plate.name, trial.mounting = mounting, trial.triangle = t.name;
+      trial.size_px = t.size_mm * pixels_per_mm;
+      trial.centroid = PlaceInPicture{t.position_mm.x * pixels_per_mm, t.position_mm.y * pixels_per_mm};
+      out.push_back({.set_up = i,
+                     .information = information(t.size_mm / plan.target.distance_m, s75_mrad, slope,
+                                                plan.fit.lapse.value_or(0.01), plan.fit.form)});
+    }
+  }
+  const std::vector<int> places = picture_places(triangles);
+  for (std::size_t i = 0; i < out.size(); ++i) out[i].place = static_cast<std::size_t>(places[i]);
+  return out;
+}
+
+/// Effective number of places after `shown` presentations of each set-up; for binary answers of triangles of set-ups.
+double effective_places(const std::vector<PlacedInformation>& triangles, std::span<const int> shown,
+                        AnswerKind answers) {
+  std::vector<double> of_places(triangles.size());
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const PlacedInformation& one = triangles[i];
+    of_places[answers == AnswerKind::binary ? i : one.place] += one.information * shown[one.set_up];
+  }
+  return effective_number(of_places);
+}
+
 /// Sets the interval of ln S75 of graded answers of a design, from the standard error of as many binary ones.
 void predict_graded(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
                     const GradedDesignFigures& design, double q_eff, double binary_se) {
@@ -90,6 +133,7 @@ void predict_graded(ContrastPrediction& point, const Plan& plan, const Experimen
   point.uncertainty_percent = 100 * std::expm1(factor * se);
   point.se_ln_s75 = se;
   point.degrees_of_freedom = graded_freedom(design);
+  point.over_set_ups = set_ups_are_clusters(design);
   point.interval_factor = factor / graded_likely_excess(design);
   if (!pairs_asked(plan, inputs.sensor)) return;
   point.paired_se_ln_ratio =
@@ -102,9 +146,10 @@ void predict_binary(ContrastPrediction& point, const Plan& plan, const Experimen
   const bool by_twin = chosen_estimator(plan, inputs.sensor).estimator == FitEstimator::twin_shape;
   const double of_shape = by_twin ? se_of_shape(inputs.accuracy, q_eff, binary_se) : 0;
   const double se = std::hypot(binary_se * std::sqrt(pattern_inflation(design)), of_shape);
-  point.uncertainty_percent = 100 * std::expm1(likely_excess * normal_z95 * se);
+  const double t = distribution::quantile_above(0.025, two_way_freedom(design));
+  point.uncertainty_percent = 100 * std::expm1(likely_excess * t * se);
   point.se_ln_s75 = se;
-  point.interval_factor = mean_excess * normal_z95;
+  point.interval_factor = mean_excess * t;
 }
 
 /// Standard error of ln S75 of binary answers of constant stimuli; empty if the sizes do not identify a threshold.
@@ -160,21 +205,29 @@ std::optional<AnswerForecast> answer_forecast(const Plan& plan, const Experiment
   AnswerForecast forecast{.outlook = *outlook, .information = set_up_information(plan, inputs, *outlook)};
   forecast.all = graded_design(plan, inputs, *outlook, forecast.information);
   forecast.binary_se = *binary_se;
+  forecast.triangles = placed_information(plan, inputs, *outlook);
   return forecast;
 }
 
 void predict_interval(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
                       const AnswerForecast& forecast, std::span<const int> shown) {
   std::vector<double> seen = forecast.information;
-  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] *= shown[i];
+  double squares = 0;
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    squares += shown[i] * seen[i] * seen[i];
+    seen[i] *= shown[i];
+  }
   GradedDesignFigures design = forecast.all;
   design.informative_set_ups = effective_number(seen);
+  design.informative_presentations = squares > 0 ? std::pow(total(seen), 2) / squares : 0;
+  const AnswerKind answers = chosen_answers(plan, inputs.sensor).kind;
+  design.informative_places = effective_places(forecast.triangles, shown, answers);
   design.set_ups = static_cast<int>(std::ranges::count_if(shown, [](int n) { return n > 0; }));
   design.presentations = std::accumulate(shown.begin(), shown.end(), 0);
   const double share = total(seen) / (total(forecast.information) * plan.simulation.phases);
   const double binary_se = forecast.binary_se / std::sqrt(share);
-  const bool graded = chosen_answers(plan, inputs.sensor).kind == AnswerKind::graded;
-  (graded ? predict_graded : predict_binary)(point, plan, inputs, design, forecast.outlook.q_eff, binary_se);
+  const auto predict = answers == AnswerKind::graded ? predict_graded : predict_binary;
+  predict(point, plan, inputs, design, forecast.outlook.q_eff, binary_se);
 }
 
 }  // namespace todbench

@@ -2,6 +2,7 @@
 // Predicted interval of S75 at one contrast, from the number of presentations in each set-up.
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,12 +12,20 @@
 
 namespace todbench {
 
+/// Expected information of a triangle of a set-up about S75.
+struct PlacedInformation {
+  std::size_t set_up = 0;  ///< index in numbered_set_ups()
+  std::size_t place = 0;   ///< index of its place in the picture (picture_places.h)
+  double information = 0;  ///< of a presentation, in any unit
+};
+
 /// Expected information of the answers at one contrast about S75.
 struct AnswerForecast {
   ContrastOutlook outlook;
   std::vector<double> information;  ///< information of a presentation in each set-up, plate by plate, in any unit
   GradedDesignFigures all{};        ///< graded_design()
   double binary_se = 0;             ///< standard error of ln S75 from binary answers to the design `all`
+  std::vector<PlacedInformation> triangles{};  ///< triangles of all set-ups
 };
 
 /// Returns the information of a presentation of each set-up at a contrast, plate by plate, in any unit.

@@ -28,6 +28,7 @@ struct ContrastPrediction {
   /// Half-width of the 95 % interval of ln S75 over its own standard error.
   double interval_factor = 0;
   std::optional<double> degrees_of_freedom{};  ///< degrees of freedom of `se_ln_s75`; empty: infinite
+  bool over_set_ups = false;  ///< true: graded answers whose interval comes from the scatter over set-ups
   /// Half-width of ln S75 due to the scatter of the measured contrast alone; more presentations do not reduce it. It is
   /// part of `uncertainty_percent`.
   double contrast_half_width = 0;

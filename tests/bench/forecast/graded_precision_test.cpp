@@ -39,9 +39,17 @@ TEST(GradedPrecision, KeepsMoreOfFewPhases) {
 
 TEST(GradedPrecision, OfUnequalSetUpsKeepsThePhasesInItsInterval) {
   // Five set-ups whose shares of the information count as 4.8: presentations and places are the clusters.
-  const GradedDesignFigures unequal{.frames = 4, .set_ups = 5, .informative_set_ups = 4.8, .presentations = 30};
+  const GradedDesignFigures unequal{.frames = 4,
+                                    .set_ups = 5,
+                                    .informative_set_ups = 4.8,
+                                    .presentations = 30,
+                                    .informative_presentations = 28.8,
+                                    .informative_places = 10.7};
   EXPECT_NEAR(graded_variance_ratio(unequal), 1.0 / 128 + 0.28, 1e-12);
-  EXPECT_NEAR(graded_freedom(unequal), 20.5, 1e-12);
+  EXPECT_NEAR(graded_freedom(unequal), 9.7, 1e-12) << "places";
+  GradedDesignFigures many_places = unequal;
+  many_places.informative_places = 40;
+  EXPECT_NEAR(graded_freedom(many_places), 27.8, 1e-12) << "presentations";
   GradedDesignFigures equal = unequal;
   equal.informative_set_ups = 5;
   EXPECT_NEAR(graded_variance_ratio(equal), 1.0 / 128 + 0.048 / 6, 1e-12);
