@@ -21,12 +21,12 @@
 #include "bench/report/number_format.h"
 #include "bench/text/text.h"
 #include "tod/presentation/largest_contrast.h"
+#include "tod/psychometric/clustered_variance.h"
 #include "tod/schedule/even_phases.h"
 
 namespace todbench {
 namespace {
 
-constexpr std::size_t least_set_ups = 5;  // clustered_variance.h
 constexpr std::array phase_choices{3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 20, 24, 32, 48, 64, 96, 128};
 constexpr int most_frames = 256;
 constexpr double least_gain = 0.995;  // a smaller one is not worth another design
@@ -437,7 +437,7 @@ Result<BestDesign> best_design(const Plan& asked, const ExperimentInputs& inputs
   plan = without_contrasts(std::move(plan), found.dropped_contrasts_k);
   plan.measurement.registration_frames = registration_frames(plan, inputs.sensor);
   const Criterion criterion(plan, request, half_width_percent, rows);
-  const std::size_t set_ups = std::min(least_set_ups, set_ups_of(plan.target));
+  const std::size_t set_ups = std::min(static_cast<std::size_t>(least_set_ups), set_ups_of(plan.target));
   auto choices = mounting_choices(plan.target.plates.size(), static_cast<int>(plan.target.mountings.size()), set_ups);
   // Few set-ups first: their designs exclude most of the others by their time. Of as many set-ups the even ones first.
   std::ranges::stable_sort(choices, {}, [&](const std::vector<int>& counts) {
@@ -500,7 +500,7 @@ std::vector<std::string> in_words(const BestDesign& found) {
   if (kind == ScheduleKind::constant)
     out.back() += fmt::format(
         "; no constant design of this bench with {} set-ups or more is faster than {:.0f} s, whatever its half-width",
-        std::min<int>(found.set_ups, least_set_ups), found.least_s);
+        std::min(found.set_ups, static_cast<int>(least_set_ups)), found.least_s);
   if (found.planned_meets && found.as_planned.bench_s < best.bench_s)
     out.push_back(
         fmt::format("the plan as it was is faster, with fewer than {} phases or {} presentations per contrast",

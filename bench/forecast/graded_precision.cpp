@@ -6,11 +6,10 @@
 #include <cmath>
 
 #include "acquisition/base/distributions.h"
+#include "tod/psychometric/clustered_variance.h"
 
 namespace todbench {
 namespace {
-
-constexpr int cancelling_set_ups = 5;  // clustered_variance.h: least_set_ups
 
 /// Share of the variance of an answer at the threshold due to noise with this share of the deciding noise.
 double part_of_answers(double share) {
@@ -114,7 +113,7 @@ int cheapest_frames(GradedDesignFigures design, double single_s, double frame_s)
 
 bool set_ups_are_clusters(const GradedDesignFigures& design) {
   const double set_ups = design.informative_set_ups > 0 ? design.informative_set_ups : design.set_ups;
-  return set_ups >= cancelling_set_ups;
+  return set_ups >= least_set_ups;
 }
 
 double two_way_freedom(const GradedDesignFigures& design) {
@@ -132,8 +131,8 @@ double likely_excess_of_error(double degrees_of_freedom) {
 }
 
 double graded_likely_excess(const GradedDesignFigures& design) {
-  if (set_ups_are_clusters(design)) return likely_excess_of_error(graded_freedom(design));
-  return likely_excess_of_error(std::max(3.0, 0.7 * design.presentations - 0.5));
+  return likely_excess_of_error(set_ups_are_clusters(design) ? design.set_ups - 1
+                                                             : std::max(3.0, 0.7 * design.presentations - 0.5));
 }
 
 double graded_interval_factor(const GradedDesignFigures& design) {

@@ -20,9 +20,11 @@ struct GradedDesignFigures {
   /// determines whether set-ups are the clusters of the interval (clustered_variance.h).
   double informative_set_ups = 0;
   int presentations = 96;  ///< presentations per contrast
-  /// Effective numbers of presentations and of places (picture_places.h; for binary answers triangles of set-ups), from
-  /// their shares of the information; 0: equal shares of the presentations, and no limit by the places.
-  double informative_presentations = 0, informative_places = 0;
+  /// Effective number of presentations, from their shares of the information; 0: equal shares.
+  double informative_presentations = 0;
+  /// Effective number of places (picture_places.h), from their shares of the information. For binary answers, every
+  /// triangle of a set-up is a place. 0: the places do not limit the degrees of freedom.
+  double informative_places = 0;
   double noise_correlation = 0;  ///< lag-1 correlation of the sensor's temporal noise, 0 to 1
   double frames_between = 0;     ///< frames between two presentations
 };
@@ -85,14 +87,8 @@ inline constexpr std::array frame_choices{1, 2, 4, 8};
 /// Returns the ratio of estimated to true standard error that 19 of 20 estimates with these degrees of freedom do not
 /// exceed.
 [[nodiscard]] double likely_excess_of_error(double degrees_of_freedom);
-/// Excess over 1 of the variance over presentations and places, divided by that of a chi-square over the number of
-/// presentations. The largest of three variances is used (clustered_variance.h), which scatters less than each of them:
-/// the standard error scatters by 0.43 / sqrt(presentations), in eight runs of a plan of 2 % with 10 to 25
-/// presentations.
-inline constexpr double scatter_of_largest = 0.61;
 /// Returns the second factor of graded_interval_factor(): likely_excess_of_error() with graded_freedom() if set-ups are
-/// the clusters. Otherwise the degrees of freedom are 0.7 times the number of presentations minus 0.5, at least 3. The
-/// standard error scatters less than this (scatter_of_largest), but its expected value differs between designs.
+/// the clusters. Otherwise the degrees of freedom are 0.7 times the number of presentations minus 0.5, at least 3.
 [[nodiscard]] double graded_likely_excess(const GradedDesignFigures& design);
 /// Returns whether set-ups are the clusters of the interval of graded answers, as in clustered_variance().
 [[nodiscard]] bool set_ups_are_clusters(const GradedDesignFigures& design);

@@ -80,17 +80,30 @@ double total(const std::vector<double>& numbers) {
   return std::accumulate(numbers.begin(), numbers.end(), 0.0);
 }
 
-/// Number of set-ups by their shares of the information, (sum)^2 / sum of squares; 0 without information.
+/// Number of clusters by their shares of the information, (sum)^2 / sum of squares; 0 without information.
 double effective_number(const std::vector<double>& information) {
   const double squares = std::inner_product(information.begin(), information.end(), information.begin(), 0.0);
   return squares > 0 ? std::pow(total(information), 2) / squares : 0;
 }
 
+/// Information of a presentation of each triangle of a plate.
+std::vector<double> triangle_information(const Plan& plan, const ExperimentInputs& inputs,
+                                         const ContrastOutlook& outlook, const TargetPlate& plate) {
+  const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
+  const double slope = std::clamp(outlook.weibull_slope, flattest, steepest);
+  std::vector<double> out;
+  for (const PlateTriangle& t : plate.triangles)
+    out.push_back(
+        information(t.size_mm / plan.target.distance_m, s75_mrad, slope, plan.fit.lapse.value_or(0.01), plan.fit.form));
+  return out;
+}
+
 /// Triangles of all set-ups with their places in the picture.
 std::vector<PlacedInformation> placed_information(const Plan& plan, const ExperimentInputs& inputs,
                                                   const ContrastOutlook& outlook) {
-  const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
-  const double slope = std::clamp(outlook.weibull_slope, flattest, steepest);
+  std::vector<std::vector<double>> of_plates;
+  for (const TargetPlate& plate : inputs.plates)
+    of_plates.push_back(triangle_information(plan, inputs, outlook, plate));
   const double pixels_per_mm = 1 / (plan.target.distance_m * inputs.sensor.ifov_mrad());
   std::vector<Trial> triangles;
   std::vector<PlacedInformation> out;
@@ -98,14 +111,14 @@ std::vector<PlacedInformation> placed_information(const Plan& plan, const Experi
   for (std::size_t i = 0; i < set_ups.size(); ++i) {
     const TargetPlate& plate = inputs.plates[set_ups[i].plate];
     const Mounting mounting = plan.target.mountings[set_ups[i].mounting];
-    for (const PlateTriangle& t : mounted(plate, mounting).triangles) {
+    const std::vector<PlateTriangle> shown = mounted(plate, mounting).triangles;  // in the order of the plate
+    for (std::size_t k = 0; k < shown.size(); ++k) {
+      const PlateTriangle& t = shown[k];
       Trial& trial = triangles.emplace_back();
       trial.plate = plate.name, trial.mounting = mounting, trial.triangle = t.name;
       trial.size_px = t.size_mm * pixels_per_mm;
       trial.centroid = PlaceInPicture{t.position_mm.x * pixels_per_mm, t.position_mm.y * pixels_per_mm};
-      out.push_back({.set_up = i,
-                     .information = information(t.size_mm / plan.target.distance_m, s75_mrad, slope,
-                                                plan.fit.lapse.value_or(0.01), plan.fit.form)});
+      out.push_back({.set_up = i, .information = of_plates[set_ups[i].plate][k]});
     }
   }
   const std::vector<int> places = picture_places(triangles);
@@ -165,16 +178,10 @@ std::optional<double> binary_error(const Plan& plan, const ExperimentInputs& inp
 
 std::vector<double> set_up_information(const Plan& plan, const ExperimentInputs& inputs,
                                        const ContrastOutlook& outlook) {
-  const double s75_mrad = outlook.s75_pitch * inputs.sensor.ifov_mrad();
-  const double slope = std::clamp(outlook.weibull_slope, flattest, steepest);
   std::vector<double> out;
-  for (std::size_t i = 0; i < inputs.plates.size(); ++i) {
-    double of_plate = 0;
-    for (const auto& t : inputs.plates[i].triangles)
-      of_plate += information(t.size_mm / plan.target.distance_m, s75_mrad, slope, plan.fit.lapse.value_or(0.01),
-                              plan.fit.form);
-    out.insert(out.end(), static_cast<std::size_t>(mountings_of(plan.target, i)), of_plate);
-  }
+  for (std::size_t i = 0; i < inputs.plates.size(); ++i)
+    out.insert(out.end(), static_cast<std::size_t>(mountings_of(plan.target, i)),
+               total(triangle_information(plan, inputs, outlook, inputs.plates[i])));
   return out;
 }
 
@@ -211,15 +218,14 @@ std::optional<AnswerForecast> answer_forecast(const Plan& plan, const Experiment
 
 void predict_interval(ContrastPrediction& point, const Plan& plan, const ExperimentInputs& inputs,
                       const AnswerForecast& forecast, std::span<const int> shown) {
-  std::vector<double> seen = forecast.information;
-  double squares = 0;
+  std::vector<double> seen = forecast.information, of_presentations;
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    squares += shown[i] * seen[i] * seen[i];
+    of_presentations.insert(of_presentations.end(), static_cast<std::size_t>(shown[i]), seen[i]);
     seen[i] *= shown[i];
   }
   GradedDesignFigures design = forecast.all;
   design.informative_set_ups = effective_number(seen);
-  design.informative_presentations = squares > 0 ? std::pow(total(seen), 2) / squares : 0;
+  design.informative_presentations = effective_number(of_presentations);
   const AnswerKind answers = chosen_answers(plan, inputs.sensor).kind;
   design.informative_places = effective_places(forecast.triangles, shown, answers);
   design.set_ups = static_cast<int>(std::ranges::count_if(shown, [](int n) { return n > 0; }));

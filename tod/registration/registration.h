@@ -122,8 +122,9 @@ inline constexpr double contrast_ring_width_px = 3;
 ///
 /// Blur reduces the contrast, mainly because of the corners. For a total blur of 0.40 px (standard deviation, sampling
 /// included), the reduction averaged over sampling phases is 0.4 % for triangles of 4 px, 0.04 % for 5 px and less than
-/// 0.01 % for 6 px or more. If the blur is known, divide the result by that for a simulated picture with contrast 1.
-/// Errors: `invalid_input` (no triangle of this size), `calibration` (a triangle is partly outside the picture).
+/// 0.01 % for 6 px or more. To correct for a known blur, divide the result by that of a simulated picture of
+/// contrast 1. Errors: `invalid_input` (no triangle of this size), `calibration` (a triangle is partly outside the
+/// picture).
 [[nodiscard]] Result<EffectiveContrast> effective_contrast(const cv::Mat1d& picture, const TargetPlate& mounted_plate,
                                                            const Registration& registration, double min_size_px,
                                                            LevelEstimate level = LevelEstimate::median);
