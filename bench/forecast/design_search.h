@@ -14,6 +14,12 @@
 
 namespace todbench {
 
+/// Least number of phases of a design.
+inline constexpr int least_design_phases = 3;
+
+/// A design replaces another one if its bench time is smaller than this share of the other bench time.
+inline constexpr double least_design_gain = 0.995;
+
 /// Requirement on a design.
 struct DesignRequest {
   /// Half-width of the 95 % interval of S75 from the trials at every contrast. 19 of 20 runs do not exceed this
