@@ -338,7 +338,7 @@ void add_curves(std::vector<Prepared>& models, const RangeQuestion& question) {
     if (const auto reach = model.head.r75_m ? model.head.r75_m : model.head.r75_ci95_m.low)
       farthest = std::max(farthest, *reach);
   }
-  if (!(farthest > 0)) return;
+  if (!(farthest > nearest_range_m)) return;
   const double step = round_step(2 * farthest / 60);
   for (auto& model : models) {
     if (!model.resolved) continue;

@@ -94,6 +94,13 @@ CriterionRange found_range(const ResolvedPerMrad& resolved, const CriterionTarge
   const double crossing = bisected(ratio, wanted, inside, end * (1 + 1e-12));
   // The curve ends before the criterion is met: it is not known below its lowest point.
   if (const auto before = ratio(crossing * (1 - 1e-9)); !before || *before > wanted * (1 + 1e-6)) {
+    if (crossing < nearest_range_m) {
+      found.reason = fmt::format(
+          "the target has the lowest contrast of the curve, {:g}, and the air reduces it below this contrast at every "
+          "distance",
+          target.contrast);
+      return found;
+    }
     found.at_least_m = crossing;
     found.reason = fmt::format(
         "the criterion is still exceeded at {0:.4g} m, beyond which the apparent contrast lies below the lowest "

@@ -106,7 +106,8 @@ class TargetLine {
 
 double TargetLine::end_m() const {
   const double depth = std::log(std::abs(task_.delta_t_k)) - nodes_.front().ln_contrast;
-  if (!task_.air) return task_.extinction_per_km > 0 ? 1000 * depth / task_.extinction_per_km : infinity;
+  const auto rounded = [](double end_m) { return std::abs(end_m) < nearest_range_m ? 0 : end_m; };
+  if (!task_.air) return task_.extinction_per_km > 0 ? rounded(1000 * depth / task_.extinction_per_km) : infinity;
   if (depth < 0) return -1;
   const auto seen = [&](double range_m) { return task_.air->optical_depth(range_m).value_or(infinity) <= depth; };
   double outside = std::min(task_.air->end_m(), std::numeric_limits<double>::max());
@@ -117,7 +118,7 @@ double TargetLine::end_m() const {
     if (!(middle > inside && middle < outside)) break;
     (seen(middle) ? inside : outside) = middle;
   }
-  return inside;
+  return rounded(inside);
 }
 
 double TargetLine::bisected(double inside, double outside, Side side) const {
@@ -216,6 +217,12 @@ std::string why_not(const TargetLine& line, const RangeTask& task, double lowest
   if (line.end_m() < 0 || line.ln_contrast(0) < std::log(lowest_k)) {
     return fmt::format("the target's contrast of {:g} K lies below the lowest contrast of the TOD curve, {:g} K",
                        std::abs(task.delta_t_k), lowest_k);
+  }
+  if (line.end_m() == 0) {
+    return fmt::format(
+        "the target has the lowest contrast of the TOD curve, {:g} K, and the air reduces it below this contrast at "
+        "every distance",
+        lowest_k);
   }
   if (line.ends_with_the_table()) {
     return fmt::format(

@@ -10,6 +10,9 @@
 
 namespace todbench {
 
+/// A shorter distance (m) is the rounding error of a contrast that equals the lowest contrast of a curve.
+inline constexpr double nearest_range_m = 1e-6;
+
 /// One row of a table, for a horizontal path.
 struct TransmittancePoint {
   double range_m = 0;        ///< >= 0

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "tod/range/criterion_range.h"
 #include "tod/range/range_prediction.h"
 
 namespace todbench {
@@ -99,6 +100,28 @@ TEST(RangeBehindAir, ClearAirIsNoAirBitForBit) {
   EXPECT_EQ(without->r75_m, clear->r75_m);
   EXPECT_EQ(without->r75_ci95_m.low, clear->r75_ci95_m.low);
   EXPECT_EQ(without->curve.back().probability, clear->curve.back().probability);
+}
+
+TEST(RangeBehindAir, ATargetOfTheLowestContrastHasNeitherRangeNorBound) {
+  const std::vector<TodThreshold> single{{0.5013647232896002, 2.58, {2.54, 2.62}}};
+  // With these contrasts, the logarithms differ by 0 or by a rounding error.
+  for (const double delta_t_k : {0.5, 0.5013647232896002, std::nextafter(0.5013647232896002, 1.0)}) {
+    for (const Transmittance& air :
+         {Transmittance::beer_lambert(0.2), *Transmittance::of_table(Rows{{100, 0.9}, {5000, 0.5}})}) {
+      RangeTask task{.size_m = 2, .delta_t_k = delta_t_k};
+      task.air = air;
+
+      const auto found = predict_range(single, task);
+
+      ASSERT_TRUE(found);
+      EXPECT_FALSE(found->r75_m || found->r75_ci95_m.low) << delta_t_k;
+      EXPECT_NE(found->reason.find("lowest contrast"), std::string::npos) << found->reason;
+      const auto of_criterion = range_for_probability(
+          [](double contrast) { return contrast < 0.5013647232896002 ? std::nullopt : std::optional(0.4); },
+          {2, task.delta_t_k}, air, {.at_half = 1, .form = ProbabilityForm::johnson}, 0.75);
+      EXPECT_FALSE(of_criterion.range_m || of_criterion.at_least_m) << delta_t_k;
+    }
+  }
 }
 
 TEST(RangeBehindAir, ATableThatEndsBeforeTheRangeGivesALowerLimit) {
