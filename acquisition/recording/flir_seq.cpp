@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
 #include <utility>
 
 #include "acquisition/base/try.h"
@@ -202,14 +203,25 @@ SourceInfo source_info(const std::filesystem::path& path, const FlirSeqFrame& fi
   return info;
 }
 
-/// States how much the compression of a frame changed its counts.
-Result<void> note_losses(const FlirBytes& bytes, const FlirSeqFrame& frame, SourceInfo& info) {
-  TODBENCH_TRY(const std::string stored, stored_bytes(bytes, frame));
-  TODBENCH_TRY(const int largest, largest_jpeg_ls_error(stored));
-  info.settings["LargestCompressionError"] = std::to_string(largest);
-  if (largest == 0) return {};
-  info.warnings.push_back("The camera compressed the pixels with losses: a count may be off by " +
-                          std::to_string(largest) + ". Noise in this file is not the noise of the camera.");
+/// States the largest error that the compression of any frame permits. A damaged frame is reported when it is read.
+Result<void> note_losses(const FlirBytes& bytes, std::span<const FlirSeqFrame> frames, SourceInfo& info) {
+  // The header of a JPEG-LS picture precedes its pixels.
+  constexpr std::uint64_t longest_header = 64 * 1024;
+  std::optional<int> largest;
+  for (const FlirSeqFrame& frame : frames) {
+    if (frame.storage != FlirStorage::jpeg_ls) continue;
+    const auto error = largest_jpeg_ls_error(
+        bytes.read(frame.pixel_offset, static_cast<std::size_t>(std::min(frame.pixel_bytes, longest_header))));
+    if (error)
+      largest = std::max(*error, largest.value_or(0));
+    else if (&frame == &frames.front())
+      return tl::unexpected(error.error());
+  }
+  if (!largest) return {};
+  info.settings["LargestCompressionError"] = std::to_string(*largest);
+  if (*largest > 0)
+    info.warnings.push_back("The camera compressed the pixels with losses: a count may be off by " +
+                            std::to_string(*largest) + ". Noise in this file is not the noise of the camera.");
   return {};
 }
 
@@ -238,9 +250,7 @@ Result<Recording> open_flir_seq(const std::filesystem::path& path) {
   Recording recording;
   recording.info = source_info(path, first, *scale);
   bool swapped = false;
-  if (first.storage == FlirStorage::jpeg_ls) {
-    if (auto noted = note_losses(*bytes, first, recording.info); !noted) return fail(path.string(), noted.error());
-  }
+  if (auto noted = note_losses(*bytes, *frames, recording.info); !noted) return fail(path.string(), noted.error());
   if (first.storage == FlirStorage::png) {
     const auto counts = stored_pixels(*bytes, first);
     if (!counts) return fail(path.string(), counts.error());

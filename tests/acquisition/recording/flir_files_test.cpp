@@ -113,6 +113,21 @@ TEST(FlirFiles, ThatWereCompressedWithLossesSayByHowMuch) {
   EXPECT_LE(off, 5);
 }
 
+// The sample of a T1030sc has frames of 5 to 20 counts.
+TEST(FlirFiles, StateTheLargestErrorOfAllTheirFrames) {
+  const TemporaryFolder folder;
+  for (const auto& [first, second] : {std::pair(5, 20), std::pair(20, 5), std::pair(0, 16)}) {
+    const std::string content =
+        record_with(jpeg_ls_of(flir_scene(0), first)) + record_with(jpeg_ls_of(flir_scene(1), second));
+
+    const auto recording = open_recording(folder.write("a.csq", content), "");
+
+    ASSERT_TRUE(recording) << recording.error().message;
+    EXPECT_EQ(recording->info.settings.at("LargestCompressionError"), std::to_string(std::max(first, second)));
+    EXPECT_EQ(recording->info.warnings.size(), 1u);
+  }
+}
+
 TEST(FlirFiles, SayThatObjectParametersAreNotApplied) {
   const TemporaryFolder folder;
   FlirFileCamera camera;
