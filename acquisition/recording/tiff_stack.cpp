@@ -37,6 +37,7 @@ std::optional<int> depth_of(const TiffPage& page) {
 struct PageShape {
   cv::Size size;  ///< after its orientation is applied
   int depth = CV_16U;
+  bool white_is_zero = false;
   bool operator==(const PageShape&) const = default;
 };
 
@@ -58,7 +59,8 @@ Result<PageShape> page_shape(const TiffFile& file) {
   if (TIFFScanlineSize(file.get()) != static_cast<tmsize_t>(page.width) * static_cast<tmsize_t>(CV_ELEM_SIZE(*depth)))
     return fail(ErrorCode::invalid_input, file.why("the rows of a page have an unexpected length"));
   const cv::Size size(static_cast<int>(page.width), static_cast<int>(page.height));
-  return PageShape{exchanges_axes(page.orientation) ? cv::Size(size.height, size.width) : size, *depth};
+  return PageShape{exchanges_axes(page.orientation) ? cv::Size(size.height, size.width) : size, *depth,
+                   page.white_is_zero()};
 }
 
 /// Applies the tag Orientation and makes the smallest value the darkest.
@@ -173,6 +175,9 @@ Result<void> add_pages(const TiffFile& file, std::size_t number, std::vector<Pag
     if (page.depth != shape.depth)
       return fail(ErrorCode::invalid_input,
                   "page " + std::to_string(pages.size() + 1) + " has another kind of values than the first page");
+    if (page.white_is_zero != shape.white_is_zero)
+      return fail(ErrorCode::invalid_input, "page " + std::to_string(pages.size() + 1) +
+                                                " has another tag PhotometricInterpretation than the first page");
     const std::uint64_t images = stack ? stack->images : 1;
     for (std::uint64_t k = 0; k < images; ++k) pages.push_back({number, TIFFCurrentDirOffset(file.get()), stack, k});
     if (TIFFLastDirectory(file.get()) != 0) return {};
@@ -239,6 +244,12 @@ Result<Recording> open_tiff_stack(const std::filesystem::path& path, const TiffF
       return fail(ErrorCode::invalid_input, files[i].string() + ": " + file.why("not a TIFF file"));
     if (auto added = add_pages(file, i, pages, shape); !added) return fail(files[i].string(), added.error());
   }
+  // A scale refers to the values in the file, and their order is reversed.
+  if (shape.white_is_zero && (shape.depth != CV_16U || format.scale.calibrated() || format.significant_bits < 16))
+    return fail(ErrorCode::invalid_input,
+                path.string() +
+                    ": the tag PhotometricInterpretation states that 0 is white, so the values are "
+                    "reversed. Write the file with 0 as black to state their sign, bits or temperature scale");
   const std::string first_name = files.front().filename().string(), last_name = files.back().filename().string();
   auto reader = std::make_shared<PageReader>(std::move(files), std::move(pages));
   const auto values = value_counts(shape.depth, format.unit, format.scale.calibrated(), reader->count(),

@@ -180,6 +180,12 @@ TEST(TiffStack, IsTurnedAsItsOrientationSaysAndTurnedRoundWhereZeroIsWhite) {
         [](TIFF* tiff) { TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISWHITE); });
   expect_frame(open_tiff_stack(path, {}).value(), 0, shown);
   EXPECT_EQ(cv::norm(read_picture(path)->picture, cv::Mat1d(shown), cv::NORM_INF), 0);
+  // A scale and a number of bits describe the values in the file.
+  for (const char* query : {"kelvin_per_count=0.01", "kelvin_per_count=0.01&offset_k=0", "bits=14"}) {
+    const auto refused = open_recording(path, query);
+    ASSERT_FALSE(refused) << query;
+    EXPECT_THAT(refused.error().message, HasSubstr("0 is white"));
+  }
 }
 
 TEST(TiffStack, OfAFolderIsReadInTheOrderOfTheNumbersInItsNames) {
