@@ -24,10 +24,10 @@ struct TiffFormat {
 /// their names (f_2 before f_10); a warning is added if the alphabetical order differs. Accepts one sample per pixel:
 /// integers of 16 bits, or floating point of 32 or 64 bits. Accepts strips and tiles, any byte order, any lossless
 /// compression that libtiff reads, BigTIFF, and uncompressed ImageJ stacks with one directory. Signed and
-/// floating-point values require a unit (ValueCounts). Applies the tag Orientation. If the tag PhotometricInterpretation
-/// states that 0 is white, a count is 65535 minus the value; signed values, a scale and a number of bits are then
-/// rejected. Reads pages on demand. Errors: `io`, `invalid_input` (not a TIFF, an unsupported kind of picture, pages of
-/// different size or tags, no page, fewer images than ImageJ states).
+/// floating-point values require a unit (ValueCounts). Applies the tag Orientation. If the tag
+/// PhotometricInterpretation states that 0 is white, a count is 65535 minus the value; signed values, a scale and a
+/// number of bits are then rejected. Reads pages on demand. Errors: `io`, `invalid_input` (not a TIFF, an unsupported
+/// kind of picture, pages of different size or tags, no page, fewer images than ImageJ states).
 [[nodiscard]] Result<Recording> open_tiff_stack(const std::filesystem::path& path, const TiffFormat& format);
 
 }  // namespace todbench
