@@ -18,6 +18,7 @@ namespace {
 constexpr std::size_t header_bytes = 64;
 constexpr std::size_t index_entry_bytes = 32;
 constexpr std::size_t raw_header_bytes = 32;
+constexpr std::size_t version_offset = 20;
 /// Least length of the constants, up to the time; and the length up to the frame rate.
 constexpr std::size_t camera_info_bytes = 0x390;
 constexpr std::size_t camera_info_with_rate_bytes = 0x466;
@@ -73,17 +74,22 @@ bool separate(std::vector<FlirBlock> blocks) {
   return std::adjacent_find(blocks.begin(), blocks.end(), over) == blocks.end();
 }
 
+/// The version, 100 and a few, shows the byte order of a header and its index; empty if the version is unknown.
+std::optional<bool> big_endian_header(std::string_view start) {
+  const auto plausible = [](std::uint32_t version) { return version >= 100 && version < 200; };
+  if (plausible(FlirFields(start, false).u32(version_offset))) return false;
+  if (plausible(FlirFields(start, true).u32(version_offset))) return true;
+  return std::nullopt;
+}
+
 /// The FFF header at `begin` and its index.
 Result<std::vector<FlirBlock>> read_index(const FlirBytes& bytes, std::uint64_t begin) {
   const std::string where = "FFF record at byte " + std::to_string(begin);
   const std::string start = bytes.read(begin, header_bytes);
   if (start.size() < header_bytes || !is_flir_record(start)) return broken("no " + where);
-  // The version, 100 and a few, shows the byte order of the header and the index.
-  const FlirFields little(start, false), big(start, true);
-  const auto plausible = [](std::uint32_t version) { return version >= 100 && version < 200; };
-  if (!plausible(little.u32(20)) && !plausible(big.u32(20))) return broken(where + " has an unknown version");
-  const bool big_endian = !plausible(little.u32(20));
-  const FlirFields& header = big_endian ? big : little;
+  const auto big_endian = big_endian_header(start);
+  if (!big_endian) return broken(where + " has an unknown version");
+  const FlirFields header(start, *big_endian);
   const std::uint64_t index = begin + header.u32(24);
   const std::size_t count = header.u32(28);
   if (count > 1000 || index + count * index_entry_bytes > bytes.size())
@@ -92,7 +98,7 @@ Result<std::vector<FlirBlock>> read_index(const FlirBytes& bytes, std::uint64_t 
   // Header and index are blocks, too: no other one may lie over them.
   std::vector<FlirBlock> blocks{{0, begin, header_bytes}, {0, index, table.size()}};
   for (std::size_t i = 0; i < count; ++i) {
-    const FlirFields entry(std::string_view(table).substr(std::min(i * index_entry_bytes, table.size())), big_endian);
+    const FlirFields entry(std::string_view(table).substr(std::min(i * index_entry_bytes, table.size())), *big_endian);
     FlirBlock found{entry.u16(0), begin + entry.u32(12), entry.u32(16)};
     if (found.type == 0 || found.length == 0) continue;
     if (found.offset + found.length > bytes.size()) {
@@ -102,6 +108,10 @@ Result<std::vector<FlirBlock>> read_index(const FlirBytes& bytes, std::uint64_t 
       found.length -= missing;
       found.cut_off = true;
     }
+    const bool second =
+        std::any_of(blocks.begin(), blocks.end(), [&](const FlirBlock& block) { return block.type == found.type; });
+    if (second && (found.type == raw_data_type || found.type == camera_info_type))
+      return broken(where + " has two blocks of " + (found.type == raw_data_type ? "pixels" : "constants"));
     blocks.push_back(found);
   }
   if (!separate(blocks)) return broken(where + " has blocks that overlap");
@@ -136,8 +146,8 @@ Result<void> read_camera_info(const FlirBytes& bytes, const FlirBlock& block, Fl
   camera.software = info.text(0x114, 16);
   camera.lens = info.text(0x170, 32);
   camera.lens_serial = info.text(0x1A0, 16);
-  camera.raw_median = info.u16(0x338);
   camera.frame_rate_hz = info.u16(0x464);
+  frame.raw_median = info.u16(0x338);
   // Seconds since 1970 and, in the low half of the next word, milliseconds.
   frame.device_time_ns =
       std::int64_t{info.u32(0x384)} * 1'000'000'000 + (info.u32(0x388) & 0xFFFFU) * std::int64_t{1'000'000};
@@ -171,6 +181,20 @@ Result<void> read_raw_data(const FlirBytes& bytes, const FlirBlock& block, FlirS
   if (frame.storage != FlirStorage::raw) return {};
   return broken("the pixels have an unknown compression or are truncated: " + std::to_string(frame.pixel_bytes) +
                 " bytes for " + std::to_string(frame.width) + " x " + std::to_string(frame.height));
+}
+
+/// Whether another record begins in the record from `begin` to `end`, outside its pixels. An index that lies joins the
+/// pixels of one frame to the time of another.
+bool other_record_inside(const FlirBytes& bytes, std::uint64_t begin, std::uint64_t end, const FlirSeqFrame& frame) {
+  constexpr std::size_t window = 65536;
+  const auto found = [&](std::uint64_t from, std::uint64_t to) {
+    for (std::uint64_t at = from; at < to; at += window - header_bytes) {
+      if (holds_flir_record(bytes.read(at, static_cast<std::size_t>(std::min<std::uint64_t>(window, to - at)))))
+        return true;
+    }
+    return false;
+  };
+  return found(begin + header_bytes, frame.pixel_offset) || found(frame.pixel_offset + frame.pixel_bytes, end);
 }
 
 }  // namespace
@@ -214,6 +238,17 @@ bool is_flir_record(std::string_view start) {
   return start.starts_with("FFF\0"sv) || start.starts_with("AFF\0"sv);
 }
 
+bool holds_flir_record(std::string_view bytes) {
+  using namespace std::string_view_literals;
+  // The first byte of a record may be an F, too, so the search is for the bytes that follow it.
+  constexpr auto rest = "FF\0"sv;
+  for (std::size_t at = bytes.find(rest, 1); at != std::string_view::npos; at = bytes.find(rest, at + 1)) {
+    const std::string_view start = bytes.substr(at - 1, header_bytes);
+    if (is_flir_record(start) && big_endian_header(start)) return true;
+  }
+  return false;
+}
+
 Result<FlirRecord> read_flir_record(const FlirBytes& bytes, std::uint64_t begin) {
   TODBENCH_TRY(const auto blocks, read_index(bytes, begin));
   FlirRecord record;
@@ -225,6 +260,8 @@ Result<FlirRecord> read_flir_record(const FlirBytes& bytes, std::uint64_t begin)
     record.end = std::max(record.end, block.offset + block.length);
   }
   if (record.frame.width == 0) return broken("the record has no pixels");
+  if (other_record_inside(bytes, begin, record.end, record.frame))
+    return broken("FFF record at byte " + std::to_string(begin) + " contains another record");
   return record;
 }
 

@@ -55,6 +55,7 @@ struct FlirObjectParameters {
   double reflected_temperature_k = 0, atmospheric_temperature_k = 0, window_temperature_k = 0;
   double window_transmission = 1;
   double relative_humidity = 0;  ///< 0 ... 1
+  bool operator==(const FlirObjectParameters&) const = default;
 };
 
 /// The camera of a record, with its settings.
@@ -64,7 +65,7 @@ struct FlirCamera {
   std::string model, serial, software, lens, lens_serial;
   double frame_rate_hz = 0;                  ///< 0: not stated
   double range_low_k = 0, range_high_k = 0;  ///< limits of the measuring range
-  int raw_median = 0;                        ///< counts, as the camera states it; 0: not stated
+  bool operator==(const FlirCamera&) const = default;
 };
 
 /// Storage format of the pixels of a frame.
@@ -77,6 +78,7 @@ struct FlirSeqFrame {
   FlirStorage storage = FlirStorage::raw;
   bool big_endian = false;  ///< true: raw pixels have the high byte first
   int width = 0, height = 0;
+  int raw_median = 0;                        ///< counts, as the camera states it; 0: not stated
   std::int64_t device_time_ns = 0;           ///< the camera's clock, since 1970; 0: not stated
   std::shared_ptr<const FlirCamera> camera;  ///< shared by frames of one camera and settings; null: not stated
 };
@@ -90,8 +92,12 @@ struct FlirRecord {
 /// Returns whether the bytes begin with FFF or AFF, the first bytes of a record.
 [[nodiscard]] bool is_flir_record(std::string_view start);
 
-/// Reads the record at `begin` without its pixels. Errors: `invalid_input` (no record, truncated, no pixels, blocks
-/// that overlap or lie outside the file).
+/// Returns whether the bytes contain the header of a record that states a known version.
+[[nodiscard]] bool holds_flir_record(std::string_view bytes);
+
+/// Reads the record at `begin` without its pixels. Errors: `invalid_input` (no record, truncated, no pixels, two blocks
+/// of pixels or of constants, blocks that overlap or lie outside the file, another record inside this one). Another
+/// record inside compressed pixels is not found here.
 [[nodiscard]] Result<FlirRecord> read_flir_record(const FlirBytes& bytes, std::uint64_t begin);
 
 }  // namespace todbench

@@ -3,10 +3,13 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <optional>
+#include <set>
 #include <span>
 #include <utility>
 
@@ -66,11 +69,10 @@ Result<std::vector<FlirSeqFrame>> frames_in(const FlirBytes& bytes) {
     auto record = read_flir_record(bytes, at);
     if (!record) return fail("frame " + std::to_string(frames.size()), record.error());
     FlirSeqFrame& frame = record->frame;
-    // One description serves all frames with the same constants: a long recording has many frames of one camera.
+    // One description serves all frames with the same settings: a long recording has many frames of one camera.
     if (!frames.empty()) {
       const auto& before = frames.back().camera;
-      if (!frame.camera || (before && frame.camera->planck == before->planck && frame.camera->serial == before->serial))
-        frame.camera = before;
+      if (!frame.camera || (before && *frame.camera == *before)) frame.camera = before;
     }
     frames.push_back(std::move(frame));
     at = record->end;
@@ -79,8 +81,11 @@ Result<std::vector<FlirSeqFrame>> frames_in(const FlirBytes& bytes) {
   return frames;
 }
 
+/// Whether two frames have the same size and the same scale.
 bool same_camera(const FlirSeqFrame& a, const FlirSeqFrame& b) {
-  return a.width == b.width && a.height == b.height && a.camera == b.camera;
+  if (a.width != b.width || a.height != b.height) return false;
+  if (!a.camera || !b.camera) return a.camera == b.camera;
+  return a.camera->planck == b.camera->planck && a.camera->serial == b.camera->serial;
 }
 
 /// Reads the bytes of the pixels.
@@ -90,6 +95,8 @@ Result<std::string> stored_bytes(const FlirBytes& bytes, const FlirSeqFrame& fra
     return fail(ErrorCode::invalid_input, "the compressed picture is longer than its pixels");
   const std::string stored = bytes.read(frame.pixel_offset, static_cast<std::size_t>(frame.pixel_bytes));
   if (stored.size() != frame.pixel_bytes) return fail(ErrorCode::io, "the file became shorter after it was opened");
+  if (frame.storage != FlirStorage::raw && holds_flir_record(stored))
+    return fail(ErrorCode::invalid_input, "the compressed picture contains another record");
   return stored;
 }
 
@@ -105,27 +112,38 @@ Result<cv::Mat1w> stored_pixels(const FlirBytes& bytes, const FlirSeqFrame& fram
   return counts;
 }
 
-/// Whether the bytes of a PNG are exchanged, as many FLIR cameras write them: by the median that the camera states, or
-/// else by the smoothness of the picture.
-bool is_swapped(const cv::Mat1w& counts, int stated_median) {
-  if (stated_median > 0) {
-    std::vector<ushort> values(counts.begin(), counts.end());
-    const auto median = [&] {
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), middle, values.end());
-      return static_cast<int>(*middle);
-    };
-    const int as_stored = std::abs(median() - stated_median);
-    for (auto& value : values) value = static_cast<ushort>(value << 8 | value >> 8);
-    const int swapped = std::abs(median() - stated_median);
-    if (as_stored != swapped) return swapped < as_stored;
-  }
+/// Whether the bytes of a PNG are exchanged, by the median that the camera states for this frame. Empty if the median
+/// does not decide.
+std::optional<bool> swapped_by_median(const cv::Mat1w& counts, int stated_median) {
+  if (stated_median <= 0) return std::nullopt;
+  std::vector<ushort> values(counts.begin(), counts.end());
+  const auto median = [&] {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return static_cast<int>(*middle);
+  };
+  const int as_stored = std::abs(median() - stated_median);
+  for (auto& value : values) value = static_cast<ushort>(value << 8 | value >> 8);
+  const int swapped = std::abs(median() - stated_median);
+  if (as_stored == swapped) return std::nullopt;
+  return swapped < as_stored;
+}
+
+/// Byte order of the PNG pictures of a file, as the first of them shows it: many FLIR cameras exchange the bytes. It
+/// holds for the frames whose median does not decide. False without a PNG.
+Result<bool> png_swapped(const FlirBytes& bytes, std::span<const FlirSeqFrame> frames) {
+  const auto png = std::find_if(frames.begin(), frames.end(),
+                                [](const FlirSeqFrame& frame) { return frame.storage == FlirStorage::png; });
+  if (png == frames.end()) return false;
+  TODBENCH_TRY(const auto counts, stored_pixels(bytes, *png));
+  if (const auto decided = swapped_by_median(counts, png->raw_median)) return *decided;
   return byte_order_evidence(counts, {}).verdict == ByteOrderVerdict::swapped;
 }
 
 Result<RecordedFrame> read_pixels(const FlirBytes& bytes, const FlirSeqFrame& frame, bool swapped) {
   TODBENCH_TRY(auto counts, stored_pixels(bytes, frame));
-  if (swapped) swap_bytes(counts);
+  if (frame.storage == FlirStorage::png && swapped_by_median(counts, frame.raw_median).value_or(swapped))
+    swap_bytes(counts);
   RecordedFrame recorded;
   recorded.counts = std::move(counts);
   recorded.device_time_ns = frame.device_time_ns;
@@ -137,10 +155,16 @@ std::string text(double value) {
   return fmt::format("{}", static_cast<float>(value));
 }
 
-std::string storage_text(const FlirSeqFrame& frame, bool swapped) {
-  if (frame.storage == FlirStorage::jpeg_ls) return "JPEG-LS";
-  if (frame.storage == FlirStorage::png) return swapped ? "PNG with exchanged bytes" : "PNG";
-  return frame.big_endian ? "raw, big-endian" : "raw, little-endian";
+/// The storage formats of the frames, each once.
+std::string storage_text(std::span<const FlirSeqFrame> frames, bool swapped) {
+  const auto name = [&](const FlirSeqFrame& frame) -> std::string {
+    if (frame.storage == FlirStorage::jpeg_ls) return "JPEG-LS";
+    if (frame.storage == FlirStorage::png) return swapped ? "PNG with exchanged bytes" : "PNG";
+    return frame.big_endian ? "raw, big-endian" : "raw, little-endian";
+  };
+  std::set<std::string> names;
+  for (const FlirSeqFrame& frame : frames) names.insert(name(frame));
+  return fmt::format("{}", fmt::join(names, "; "));
 }
 
 /// Date and time in UTC; empty if the camera states none.
@@ -151,24 +175,60 @@ std::string date_text(std::int64_t device_time_ns) {
                      device_time_ns % second_ns / 1'000'000);
 }
 
-/// States that object parameters other than those of a black body are not in the temperatures; empty if all are
-/// neutral.
-std::string object_note(const FlirObjectParameters& object) {
+/// States the object parameters that are not those of a black body in front of the lens, with their values in all
+/// frames; empty if all are neutral.
+std::string object_note(std::span<const FlirSeqFrame> frames) {
   std::string not_neutral;
-  const auto add = [&](const char* name, double value) {
-    not_neutral += (not_neutral.empty() ? "" : ", ") + std::string(name) + " = " + text(value);
+  const auto add = [&](const char* name, double FlirObjectParameters::*parameter, double neutral) {
+    double low = frames.front().camera->object.*parameter, high = low;
+    for (const FlirSeqFrame& frame : frames) {
+      low = std::min(low, frame.camera->object.*parameter);
+      high = std::max(high, frame.camera->object.*parameter);
+    }
+    // Cameras store factors in steps of 0.001.
+    if (std::abs(low - neutral) <= 1e-3 && std::abs(high - neutral) <= 1e-3) return;
+    not_neutral += (not_neutral.empty() ? "" : ", ") + std::string(name) + " = " + text(low);
+    if (low != high) not_neutral += " to " + text(high);
   };
-  // Cameras store factors in steps of 0.001.
-  if (!(std::abs(object.emissivity - 1) <= 1e-3)) add("ObjectEmissivity", object.emissivity);
-  if (object.distance_m > 0) add("ObjectDistance", object.distance_m);
-  if (!(std::abs(object.window_transmission - 1) <= 1e-3)) add("IRWindowTransmission", object.window_transmission);
+  add("ObjectEmissivity", &FlirObjectParameters::emissivity, 1);
+  add("ObjectDistance", &FlirObjectParameters::distance_m, 0);
+  add("IRWindowTransmission", &FlirObjectParameters::window_transmission, 1);
   if (not_neutral.empty()) return {};
   return "The temperatures are those of a black body in front of the lens: the Planck constants in the file are "
          "applied, its object parameters are not (" +
          not_neutral + ").";
 }
 
-SourceInfo source_info(const std::filesystem::path& path, const FlirSeqFrame& first, const RadiometricScale& scale) {
+/// States frames that are out of order or missing by the clock of the camera.
+void note_times(std::span<const FlirSeqFrame> frames, SourceInfo& info) {
+  std::vector<std::int64_t> steps_ns;
+  for (std::size_t k = 1; k < frames.size(); ++k) {
+    if (frames[k - 1].device_time_ns > 0 && frames[k].device_time_ns > 0)
+      steps_ns.push_back(frames[k].device_time_ns - frames[k - 1].device_time_ns);
+  }
+  if (steps_ns.empty()) return;
+  const auto back = std::count_if(steps_ns.begin(), steps_ns.end(), [](std::int64_t step) { return step < 0; });
+  if (back > 0) {
+    info.warnings.push_back(
+        "The frames are not in the order of their exposures: the clock of the camera goes back at " +
+        std::to_string(back) + " of " + std::to_string(steps_ns.size()) + " frames.");
+    return;
+  }
+  std::sort(steps_ns.begin(), steps_ns.end());
+  const std::int64_t usual_ns = steps_ns[steps_ns.size() / 2];
+  // Without a frame, the step is twice the usual one.
+  const auto gap = std::upper_bound(steps_ns.begin(), steps_ns.end(), usual_ns + usual_ns / 2);
+  if (usual_ns == 0 || gap == steps_ns.end()) return;
+  info.warnings.push_back(fmt::format(
+      "Frames may be missing: the usual time between two frames is {:.3f} s, but {} of {} times are longer, up to "
+      "{:.3f} s.",
+      static_cast<double>(usual_ns) * 1e-9, steps_ns.end() - gap, steps_ns.size(),
+      static_cast<double>(steps_ns.back()) * 1e-9));
+}
+
+SourceInfo source_info(const std::filesystem::path& path, std::span<const FlirSeqFrame> frames,
+                       const RadiometricScale& scale) {
+  const FlirSeqFrame& first = frames.front();
   const FlirCamera& camera = *first.camera;
   SourceInfo info;
   info.id = camera_id(camera_scheme::file, path.string());
@@ -199,7 +259,8 @@ SourceInfo source_info(const std::filesystem::path& path, const FlirSeqFrame& fi
                    {"LensModel", camera.lens},
                    {"LensSerialNumber", camera.lens_serial},
                    {"DateTimeOriginal", date_text(first.device_time_ns)}};
-  if (auto note = object_note(camera.object); !note.empty()) info.warnings.push_back(std::move(note));
+  if (auto note = object_note(frames); !note.empty()) info.warnings.push_back(std::move(note));
+  note_times(frames, info);
   return info;
 }
 
@@ -248,17 +309,13 @@ Result<Recording> open_flir_seq(const std::filesystem::path& path) {
   const auto scale = planck_scale(first.camera->planck);
   if (!scale) return fail(path.string(), scale.error());
   Recording recording;
-  recording.info = source_info(path, first, *scale);
-  bool swapped = false;
+  recording.info = source_info(path, *frames, *scale);
   if (auto noted = note_losses(*bytes, *frames, recording.info); !noted) return fail(path.string(), noted.error());
-  if (first.storage == FlirStorage::png) {
-    const auto counts = stored_pixels(*bytes, first);
-    if (!counts) return fail(path.string(), counts.error());
-    swapped = is_swapped(*counts, first.camera->raw_median);
-  }
-  recording.info.settings["RawThermalImageType"] = storage_text(first, swapped);
+  const auto swapped = png_swapped(*bytes, *frames);
+  if (!swapped) return fail(path.string(), swapped.error());
+  recording.info.settings["RawThermalImageType"] = storage_text(*frames, *swapped);
   recording.frame_count = frames->size();
-  recording.read = [bytes = *bytes, all = *std::move(frames), swapped](std::uint64_t index) {
+  recording.read = [bytes = *bytes, all = *std::move(frames), swapped = *swapped](std::uint64_t index) {
     return read_pixels(bytes, all[index], swapped);
   };
   return recording;

@@ -65,6 +65,7 @@ std::string counts_above(const cv::Mat1w& counts, int bits, bool are_signed) {
 }
 
 std::string unit_hint(const KnownValues& known) {
+  if (known.sign == KnownValues::Sign::of_camera) return "the scale in the file may be wrong";
   if (known.unit == ValueUnit::kelvin)
     return "state unit=celsius if the values are degrees Celsius, or unit=counts if they are counts";
   if (known.unit == ValueUnit::celsius)
@@ -92,8 +93,8 @@ Result<std::string> temperature_warning(const cv::Mat1w& counts, const Radiometr
 
 /// A warning, empty if the sign is plausible. Error: the sign was only assumed.
 Result<std::string> sign_warning(const cv::Mat1w& counts, const KnownValues& known) {
-  if (!looks_wrapped(counts)) return "";
   using Sign = KnownValues::Sign;
+  if (known.sign == Sign::of_camera || !looks_wrapped(counts)) return "";
   if (known.counts_are_signed) {
     return std::string(
                "Neighbouring pixels jump between the lowest negative and the highest positive values, as "

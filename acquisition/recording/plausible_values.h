@@ -18,6 +18,7 @@ struct KnownValues {
     stated_unsigned,   ///< raw file, signed=no
     stated_signed,     ///< raw file, signed=yes
     in_file,           ///< the file states the sign
+    of_camera,         ///< a file of the camera's own format, with its scale
   };
   Sign sign = Sign::in_file;
   bool counts_are_signed = false;  ///< the counts of the frames are the signed values plus 32768

@@ -92,6 +92,8 @@ Result<StatedFormat> stated_format(std::map<std::string, double> values) {
   if (!std::isfinite(format.frame_rate_hz) || format.frame_rate_hz < 0)
     return fail(ErrorCode::invalid_input, "frame_rate_hz must be at least 0");
   const bool calibrated = values.contains("kelvin_per_count");
+  if (!calibrated && values.contains("offset_k"))
+    return fail(ErrorCode::invalid_input, "offset_k is stated without kelvin_per_count");
   const double kelvin_per_count = take("kelvin_per_count", 0);
   const double offset_k = take("offset_k", 0);
   stated.states_sign = values.contains("signed");
@@ -155,7 +157,7 @@ Result<Recording> open_recording(const std::filesystem::path& path, const std::s
     TODBENCH_TRY(auto stream, open_frame_stream(path));
     return std::move(stream.recording);
   }
-  if (content.kind == FileKind::flir) return open_flir_seq(path);
+  if (content.kind == FileKind::flir) return checked(path, open_flir_seq(path), {KnownValues::Sign::of_camera});
   if (content.kind == FileKind::foreign) {
     return fail(ErrorCode::invalid_input,
                 path.string() + ": the file is " + content.name + ", which this program does not read as a recording");

@@ -141,6 +141,106 @@ TEST(FlirFiles, SayThatObjectParametersAreNotApplied) {
               ElementsAre(AllOf(HasSubstr("ObjectEmissivity = 0.95, ObjectDistance = 1"), HasSubstr("are not"))));
 }
 
+TEST(FlirFiles, SayWhichObjectParametersAnyFrameHas) {
+  const TemporaryFolder folder;
+  FlirFileCamera later;
+  later.emissivity = 0.5F;
+  const std::string content = record_with(raw_pixels(flir_scene(0)), 1000) +
+                              record_with(raw_pixels(flir_scene(1)), 1033, later) +
+                              record_with(raw_pixels(flir_scene(2)), 1066);
+
+  const auto recording = open_recording(folder.write("a.seq", content), "");
+
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_EQ(recording->frame_count, 3u);
+  EXPECT_THAT(recording->info.warnings, ElementsAre(HasSubstr("ObjectEmissivity = 0.5 to 1")));
+}
+
+TEST(FlirFiles, WhoseClockGoesBackOrLeavesGapsSaySo) {
+  const TemporaryFolder folder;
+  const auto with_times = [&](const std::vector<std::uint64_t>& times_ms) {
+    std::string content;
+    for (const auto time_ms : times_ms) content += record_with(raw_pixels(flir_scene(0)), time_ms);
+    const auto recording = open_recording(folder.write("a.seq", content), "");
+    return recording ? recording->info.warnings : std::vector<std::string>{recording.error().message};
+  };
+
+  EXPECT_THAT(with_times({1000, 1033, 1067, 1100, 1133}), IsEmpty());
+  EXPECT_THAT(with_times({1000, 1000, 1000}), IsEmpty());
+  EXPECT_THAT(with_times({1100, 1067, 1033, 1000}),
+              ElementsAre(HasSubstr("the clock of the camera goes back at 3 of 3")));
+  EXPECT_THAT(with_times({1000, 1033, 1100, 1133, 1167}),
+              ElementsAre(AllOf(HasSubstr("usual time between two frames is 0.034 s"), HasSubstr("1 of 4"),
+                                HasSubstr("up to 0.067 s"))));
+}
+
+TEST(FlirFiles, WithoutPlausibleTemperaturesSaySo) {
+  const TemporaryFolder folder;
+  FlirFileCamera camera;
+  camera.b = 1501e6F;
+
+  const auto recording = open_recording(folder.write("a.seq", record_with(raw_pixels(flir_scene(0)), 1, camera)), "");
+
+  ASSERT_TRUE(recording) << recording.error().message;
+  EXPECT_THAT(recording->info.warnings, ElementsAre(HasSubstr("the scale in the file may be wrong")));
+}
+
+TEST(FlirFiles, WhoseIndexJoinsTwoFramesAreRefused) {
+  const TemporaryFolder folder;
+  const std::string record = record_with(raw_pixels(flir_scene(0))), other = record_with(raw_pixels(flir_scene(1)));
+  constexpr std::size_t camera_entry = 64, raw_entry = 96, length_in_entry = 16, offset_in_entry = 12;
+  const auto changed = [&](std::size_t at, std::uint64_t value, std::size_t length) {
+    std::string first = record;
+    put(first, at, value, length);
+    return folder.write("hostile.seq", first + other + other);
+  };
+
+  // The pixels of the next record.
+  EXPECT_THAT(refused(changed(raw_entry + offset_in_entry, 128 + 0x470 + record.size(), 4)),
+              HasSubstr("contains another record"));
+  // A block of an unknown type over the next record.
+  std::string with_third = record;
+  put(with_third, 28, 3, 4);
+  std::string third(32, '\0');
+  put(third, 0, 0x77, 2);
+  put(third, offset_in_entry, record.size() + third.size(), 4);
+  put(third, length_in_entry, other.size(), 4);
+  for (const std::size_t entry : {camera_entry, raw_entry})
+    put(with_third, entry + offset_in_entry, (entry == camera_entry ? 128 : 128 + 0x470) + third.size(), 4);
+  with_third.insert(128, third);
+  EXPECT_THAT(refused(folder.write("covered.seq", with_third + other + other)), HasSubstr("contains another record"));
+  // Two blocks of pixels.
+  put(with_third, 128, 1, 2);
+  EXPECT_THAT(refused(folder.write("two.seq", with_third + other + other)), HasSubstr("two blocks of pixels"));
+}
+
+TEST(FlirFiles, WhoseCompressedPixelsCoverTheNextRecordAreRefused) {
+  const TemporaryFolder folder;
+  const std::string next = record_with(jpeg_ls_of(flir_scene(1)));
+
+  EXPECT_THAT(refused(folder.write("a.csq", record_with(jpeg_ls_of(flir_scene(0)) + next))),
+              HasSubstr("contains another record"));
+}
+
+TEST(FlirFiles, WithPixelsOfSeveralKindsAreReadFrameByFrame) {
+  const TemporaryFolder folder;
+  FlirFileCamera camera;
+  camera.raw_median = 18200;
+  const cv::Mat1w scene = flir_scene(0);
+  const std::string content = record_with(png_of(exchanged(scene.clone())).value(), 1000, camera) +
+                              record_with(raw_pixels(scene), 1033, camera) +
+                              record_with(jpeg_ls_of(scene), 1066, camera) +
+                              record_with(png_of(scene).value(), 1100, camera);
+
+  const auto recording = open_recording(folder.write("a.seq", content), "");
+
+  ASSERT_TRUE(recording) << recording.error().message;
+  ASSERT_EQ(recording->frame_count, 4u);
+  for (std::uint64_t k = 0; k < 4; ++k) expect_counts(*recording, k, scene);
+  EXPECT_EQ(recording->info.settings.at("RawThermalImageType"),
+            "JPEG-LS; PNG with exchanged bytes; raw, little-endian");
+}
+
 TEST(FlirFiles, OfJpegPicturesAreJoinedFromTheirSegmentsInAnyOrder) {
   const TemporaryFolder folder;
   auto segments = flir_segments(record_with(raw_pixels(flir_scene(0))), 700);
