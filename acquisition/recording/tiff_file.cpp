@@ -80,6 +80,34 @@ Result<void> check_layout(const TiffPage& page) {
   return {};
 }
 
+Result<void> check_extent(const TiffFile& file) {
+  TIFF* const tiff = file.get();
+  const TiffPage page = page_of(file);
+  const bool tiled = TIFFIsTiled(tiff) != 0;
+  std::uint32_t strip_rows = 0;
+  TIFFGetFieldDefaulted(tiff, TIFFTAG_ROWSPERSTRIP, &strip_rows);
+  const std::uint32_t count = tiled ? TIFFNumberOfTiles(tiff) : TIFFNumberOfStrips(tiff);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint64_t begin = TIFFGetStrileOffset(tiff, i);
+    std::uint64_t bytes = TIFFGetStrileByteCount(tiff, i);
+    if (page.compression == COMPRESSION_NONE) {
+      // Some programs state one strip that reaches to the end of the file or has no length: only its pixels are read.
+      const std::uint64_t first_row = std::uint64_t{i} * strip_rows;
+      const std::uint64_t rows =
+          std::min<std::uint64_t>(strip_rows, page.height - std::min<std::uint64_t>(first_row, page.height));
+      const std::uint64_t pixels =
+          tiled ? TIFFTileSize64(tiff) : TIFFVStripSize64(tiff, static_cast<std::uint32_t>(rows));
+      bytes = bytes == 0 ? pixels : std::min(bytes, pixels);
+    }
+    if (begin > file.size_bytes() || bytes > file.size_bytes() - begin) {
+      return fail(ErrorCode::invalid_input, "the file is truncated: its pixels reach to byte " +
+                                                std::to_string(begin + bytes) + ", but it has " +
+                                                std::to_string(file.size_bytes()) + " bytes");
+    }
+  }
+  return {};
+}
+
 TiffRows::TiffRows(const TiffFile& file, const TiffPage& page, std::size_t row_bytes)
     : file_(file), page_(page), row_(row_bytes) {
   if (TIFFIsTiled(file.get()) == 0) return;

@@ -58,6 +58,10 @@ struct TiffPage {
 /// `invalid_input`.
 [[nodiscard]] Result<void> check_layout(const TiffPage& page);
 
+/// Checks that all strips or tiles of the current page lie inside the file. A file that was truncated after its
+/// directory is found here, before its pixels are read. Error: `invalid_input`.
+[[nodiscard]] Result<void> check_extent(const TiffFile& file);
+
 /// Reads the rows of the current page in file order, from the top, each `row_bytes` long, from strips or tiles. Rows of
 /// a compressed strip can only be read in order. A page that states more data than its file can hold is refused before
 /// memory is allocated: libtiff's lossless compressions expand a byte to at most 4096 bytes. Errors: `io`.

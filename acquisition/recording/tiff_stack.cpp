@@ -47,10 +47,11 @@ Result<PageShape> page_shape(const TiffFile& file) {
   if (!page.has_size()) return fail(ErrorCode::invalid_input, "a page has no size or is too large");
   const auto depth = depth_of(page);
   if (!depth) {
-    return fail(ErrorCode::invalid_input, "a page has " + std::to_string(page.samples) + " samples of " +
-                                              std::to_string(page.bits) +
-                                              " bits per pixel, expected one sample of 16 bits, or of 32 or 64 bits "
-                                              "floating point");
+    const bool floating = page.kind == SAMPLEFORMAT_IEEEFP;
+    return fail(ErrorCode::invalid_input,
+                "a page has " + std::to_string(page.samples) + (page.samples == 1 ? " sample of " : " samples of ") +
+                    std::to_string(page.bits) + " bits" + (floating ? " floating point" : "") +
+                    " per pixel, expected one sample of 16 bits (integer) or of 32 or 64 bits (floating point)");
   }
   TODBENCH_TRY_VOID(check_layout(page));
   if (page.white_is_zero() && CV_ELEM_SIZE(*depth) != 2)
@@ -165,6 +166,7 @@ Result<void> add_pages(const TiffFile& file, std::size_t number, std::vector<Pag
   TODBENCH_TRY(const auto stack, image_j_stack(file, directories));
   do {
     TODBENCH_TRY(const auto page, page_shape(file));
+    TODBENCH_TRY_VOID(check_extent(file));
     if (pages.empty()) shape = page;
     if (page.size != shape.size) {
       return fail(ErrorCode::invalid_input,

@@ -16,8 +16,8 @@ namespace {
 
 constexpr double zero_celsius_k = 273.15;
 constexpr double signed_offset = -32768;
-/// Counts 0 and 65535 stay free: they would count as saturated.
-constexpr double most_steps = 65533;
+/// Counts 0 and 65535 stay free: they would count as saturated. The lowest value is between the counts 1 and 2.
+constexpr double most_steps = 65532;
 constexpr std::array steps_k{1e-4, 2e-4, 5e-4, 1e-3, 2e-3, 5e-3, 0.01, 0.02, 0.05, 0.1};
 
 struct ValueRange {

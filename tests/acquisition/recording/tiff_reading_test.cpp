@@ -8,6 +8,8 @@
 #include <functional>
 #include <limits>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "acquisition/recording/picture_file.h"
@@ -281,7 +283,98 @@ void write_values(const std::filesystem::path& path, const std::vector<cv::Mat>&
   TIFFClose(tiff);
 }
 
-TEST(TiffStack, OfFloatingPointTemperaturesHasThemToHalfAStepInTheStatedUnit) {
+/// A little-endian file whose directory precedes its pixels, as tifffile writes it: one strip of `strip_bytes`.
+std::string directory_first(std::uint32_t bits, std::uint32_t kind, std::uint32_t strip_bytes,
+                            const std::string& pixels) {
+  std::string bytes("II*\0\x08\0\0\0", 8);
+  const auto number = [&](std::uint32_t value, int length) {
+    for (int k = 0; k < length; ++k) bytes += static_cast<char>(value >> 8 * k & 255);
+  };
+  const std::vector<std::pair<std::uint32_t, std::uint32_t>> entries{{TIFFTAG_IMAGEWIDTH, stack_columns},
+                                                                     {TIFFTAG_IMAGELENGTH, stack_rows},
+                                                                     {TIFFTAG_BITSPERSAMPLE, bits},
+                                                                     {TIFFTAG_COMPRESSION, COMPRESSION_NONE},
+                                                                     {TIFFTAG_PHOTOMETRIC, 1},
+                                                                     {TIFFTAG_STRIPOFFSETS, 8 + 2 + 10 * 12 + 4},
+                                                                     {TIFFTAG_SAMPLESPERPIXEL, 1},
+                                                                     {TIFFTAG_ROWSPERSTRIP, stack_rows},
+                                                                     {TIFFTAG_STRIPBYTECOUNTS, strip_bytes},
+                                                                     {TIFFTAG_SAMPLEFORMAT, kind}};
+  number(static_cast<std::uint32_t>(entries.size()), 2);
+  for (const auto& [tag, value] : entries) {
+    number(tag, 2);
+    number(TIFF_LONG, 2);
+    number(1, 4);
+    number(value, 4);
+  }
+  number(0, 4);
+  return bytes + pixels;
+}
+
+TEST(TiffStack, ThatWasTruncatedBehindItsDirectoryIsRefusedWhenItIsOpened) {
+  const TemporaryFolder folder;
+  for (const auto& [bits, kind, query] : {std::tuple(16U, 1U, ""), std::tuple(32U, 3U, "unit=kelvin")}) {
+    const std::uint32_t strip = bits / 8 * stack_rows * stack_columns;
+    std::string pixels;
+    for (std::uint32_t k = 0; k < stack_rows * stack_columns; ++k)
+      pixels += bits == 16 ? std::string("\x10\x20") : std::string("\0\0\x96\x43", 4);  // 300 as a float
+
+    const auto whole = open_recording(folder.write("a.tif", directory_first(bits, kind, strip, pixels)), query);
+    ASSERT_TRUE(whole) << whole.error().message;
+    EXPECT_TRUE(whole->read(0));
+    // Some programs state a strip that reaches to the end of the file and beyond.
+    const auto longer = open_recording(folder.write("a.tif", directory_first(bits, kind, strip + 64, pixels)), query);
+    EXPECT_TRUE(longer) << longer.error().message;
+    for (const std::size_t missing : {std::size_t{1}, std::size_t{500}, pixels.size()}) {
+      pixels.resize(strip - missing);
+      const auto cut = open_recording(folder.write("a.tif", directory_first(bits, kind, strip, pixels)), query);
+      ASSERT_FALSE(cut);
+      EXPECT_EQ(cut.error().code, ErrorCode::invalid_input);
+      EXPECT_THAT(cut.error().message, HasSubstr("the file is truncated"));
+    }
+  }
+}
+
+TEST(TiffStack, OfHalfPrecisionIsRefusedByName) {
+  const TemporaryFolder folder;
+  const std::uint32_t strip = 2 * stack_rows * stack_columns;
+
+  const auto half = open_recording(folder.write("a.tif", directory_first(16, 3, strip, std::string(strip, 'A'))), "");
+
+  ASSERT_FALSE(half);
+  EXPECT_THAT(half.error().message, HasSubstr("1 sample of 16 bits floating point"));
+}
+
+TEST(TiffStack, OfFloatingPointTemperaturesHasNoCountThatLooksSaturated) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "t.tif";
+  for (int k = 0; k < 40; ++k) {
+    cv::Mat1d page(8, 8, 301.0);
+    page(1, 1) = 300 + k * 0.7e-5;
+    page(2, 2) = page(1, 1) + 65533e-4;
+    write_values(path, {page}, "w", 0);
+
+    const auto recording = open_recording(path, "unit=kelvin");
+
+    ASSERT_TRUE(recording) << recording.error().message;
+    const cv::Mat1w counts = recording->read(0)->counts;
+    EXPECT_GT(counts(1, 1), 0) << k;
+    EXPECT_LT(counts(2, 2), 65535) << k;
+  }
+}
+
+TEST(RecordingKeys, RefuseAnOffsetWithoutAScale) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "t.tif";
+  write(path, {frame(0)}, "w", [](TIFF*) {});
+
+  const auto refused = open_recording(path, "offset_k=10");
+
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("offset_k is stated without kelvin_per_count"));
+}
+
+TEST(TiffStack, OfFloatingPointTemperaturesHasThemToToHalfAStepInTheStatedUnit) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "t.tif";
   const std::vector<cv::Mat1w> counts{frame(0), frame(1)};
@@ -298,7 +391,7 @@ TEST(TiffStack, OfFloatingPointTemperaturesHasThemToHalfAStepInTheStatedUnit) {
         ASSERT_TRUE(kelvin) << kelvin.error().message;
         ASSERT_TRUE(celsius) << celsius.error().message;
         ASSERT_EQ(kelvin->frame_count, 2u);
-        // 3 K in 65533 counts: the smallest step of the series, 0.1 mK. Rounding of the file's numbers: below 0.02 mK.
+        // 3 K in 65532 steps: the smallest step of the series, 0.1 mK. Rounding of the file's numbers: below 0.02 mK.
         const LinearScale* line = kelvin->info.scale.straight_line();
         ASSERT_NE(line, nullptr);
         EXPECT_DOUBLE_EQ(line->kelvin_per_count, 1e-4);
