@@ -50,6 +50,9 @@ std::string hexadecimal(EVP_MD_CTX* context) {
 }  // namespace
 
 Result<void> write_file_atomically(const std::filesystem::path& file, std::string_view content) {
+  struct stat found {};
+  if (::stat(file.c_str(), &found) == 0 && !S_ISREG(found.st_mode) && !S_ISDIR(found.st_mode))
+    return fail(ErrorCode::invalid_input, file.string() + ": is a pipe, a socket or a device, expected a file");
   TODBENCH_TRY(const auto part, make_file_beside(file));
   int problem = write_all(part.descriptor, content);
   if (problem == 0 && ::fsync(part.descriptor) != 0) problem = errno;

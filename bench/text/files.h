@@ -12,7 +12,8 @@
 namespace todbench {
 
 /// Writes a temporary file in the same folder, syncs it and renames it: readers find the old or the new content, never
-/// a part. Errors: `io` with path and reason (disk full, access denied); the old file then remains.
+/// a part. Errors: `io` with path and reason (disk full, access denied), `invalid_input` (the path is a pipe, a socket
+/// or a device); what was there then remains.
 [[nodiscard]] Result<void> write_file_atomically(const std::filesystem::path& file, std::string_view content);
 
 /// Returns whether the path exists; false also if it cannot be looked up.

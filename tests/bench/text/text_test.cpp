@@ -2,12 +2,14 @@
 #include "bench/text/text.h"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include <bit>
 #include <cmath>
 #include <limits>
 
 #include "acquisition/base/rng.h"
+#include "bench/text/files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace todbench {
@@ -15,6 +17,18 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+
+TEST(AtomicFiles, ReplaceNeitherPipesNorDevices) {
+  const testing::TemporaryFolder folder;
+  const auto path = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+
+  const auto refused = write_file_atomically(path, "text");
+
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
+  EXPECT_EQ(std::filesystem::status(path).type(), std::filesystem::file_type::fifo);
+}
 
 TEST(NumberText, ReadsBackAsTheSameBitsForAnyDouble) {
   const RandomStream stream(7, "number text");
