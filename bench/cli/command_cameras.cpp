@@ -26,6 +26,7 @@ int run_devices(Console& console) {
 
 int run_emulate(Console& console, const EmulationArguments& arguments, StopSignals& stop) {
 #ifdef TODBENCH_WITH_ARAVIS
+  stop.observe();
   auto laboratory = start_laboratory(arguments);
   if (!laboratory) return report_error(console, laboratory.error());
   const Laboratory& lab = **laboratory;

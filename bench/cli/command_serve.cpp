@@ -27,6 +27,7 @@ int run_serve(Console& console, const RunServiceArguments& arguments, StopSignal
     if (!token) return report_error(console, with_context("--token-file", token.error()));
     options.token = *token;
   }
+  stop.observe();
   const auto server = ControlServer::start(options);
   if (!server) return report_error(console, with_context("--address", server.error()));
   if (!serve_address(arguments.address, Reach::this_computer)) {

@@ -38,7 +38,7 @@ StopSignals::StopSignals() {
       if (leaving_) return;
       if (signal == own_signal) continue;
       // A second signal skips the orderly end of the session; files on disk stay readable.
-      if (stop_.stop_requested()) ::_exit(130);
+      if (stop_.stop_requested() || !observed_) ::_exit(130);
       stop_.request_stop();
     }
   });
@@ -53,7 +53,7 @@ void StopSignals::wait() {
   std::mutex mutex;
   std::condition_variable_any stopped;
   std::unique_lock lock(mutex);
-  stopped.wait(lock, stop_.get_token(), [] { return false; });
+  stopped.wait(lock, token(), [] { return false; });
 }
 
 }  // namespace todbench

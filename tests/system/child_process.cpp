@@ -14,6 +14,8 @@
 #include <array>
 #include <cerrno>
 #include <cstdlib>
+#include <filesystem>
+#include <iterator>
 
 #include "tests/support/patience.h"
 
@@ -89,6 +91,12 @@ ChildProcess::~ChildProcess() {
   }
   close_end(out_end_);
   close_end(err_end_);
+}
+
+int ChildProcess::threads() const {
+  std::error_code ended;
+  const std::filesystem::directory_iterator tasks("/proc/" + std::to_string(pid_) + "/task", ended);
+  return ended ? 0 : static_cast<int>(std::distance(begin(tasks), end(tasks)));
 }
 
 void ChildProcess::signal(int number) const {

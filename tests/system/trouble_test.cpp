@@ -104,6 +104,19 @@ TEST(InterruptionBeforeTheFirstTrial, LeavesAValidFolderOrNone) {
   EXPECT_TRUE(verdict["ended_early"].is_string());
 }
 
+// A picture of 64 million pixels takes seconds, and its command looks at no request to stop.
+TEST(InterruptionOfAShortCommand, EndsItAtOnceWithoutAFile) {
+  const TemporaryFolder folder;
+  ChildProcess child(todbench_command({"pattern", "siemens", "--pixels", "8192", "8192", "--out", "p.npy"}),
+                     {.folder = folder.path()});
+  ASSERT_TRUE(child.wait_until([&] { return child.threads() >= 2; }));
+
+  child.signal(SIGTERM);
+
+  EXPECT_EQ(child.wait().code, 130);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "p.npy"));
+}
+
 TEST(IgnoredSignals, StayIgnoredAsNohupWantsThem) {
   const TemporaryFolder folder;
   folder.write("plan.toml", small_plan(16));
