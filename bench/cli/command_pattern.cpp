@@ -7,6 +7,7 @@
 #include <limits>
 #include <memory>
 
+#include "acquisition/base/safe_text.h"
 #include "bench/cli/commands.h"
 #include "bench/picture_files/encoded_picture.h"
 #include "bench/picture_files/npy.h"
@@ -19,7 +20,7 @@ namespace todbench {
 namespace {
 
 struct PatternArguments {
-  std::string kind, format = "png16", out;
+  std::string kind, format, out;
   std::vector<int> pixels;
   double low = 0, high = 1, level = 0.5, angle_deg = 5;
   int spokes = 36;
@@ -58,19 +59,33 @@ Result<void> may_be_written(const std::string& truth_file, const std::string& ou
   const auto there = read_text_file(truth_file);
   const std::string_view title = std::string_view(truth).substr(0, truth.find(':') + 1);
   if (there && there->starts_with(title)) return {};
-  return fail(ErrorCode::invalid_input, "--out " + out + ": the true values would overwrite " + truth_file +
-                                            ", which is not a file of true values; choose another name");
+  const bool of_other = there && there->starts_with(title.substr(0, title.find(" of ") + 4));
+  return fail(ErrorCode::invalid_input,
+              "--out " + out + ": the true values would overwrite " + truth_file + ", which is " +
+                  (of_other ? "the file of another picture" : "not a file of true values") + "; choose another name");
+}
+
+/// The format of the option, else that of the extension, else PNG.
+std::string format_of(const PatternArguments& a) {
+  const std::string extension = lower_case(std::filesystem::path(a.out).extension().string());
+  if (!a.format.empty()) return a.format;
+  if (extension == ".npy") return "npy";
+  return extension == ".tif" || extension == ".tiff" ? "tiff" : "png16";
 }
 
 int run_pattern(Console& console, const PatternArguments& a, std::uint64_t seed) {
+  const std::string format = format_of(a);
   const PictureRequest request{
       .size = {a.pixels[0], a.pixels[1]}, .low = a.low, .high = a.high, .kind = kind_of(a, seed)};
   const auto picture = drawn_picture(request);
   if (!picture) return report_error(console, picture.error());
-  const auto bytes = encoded(picture->levels, a.format);
+  const auto bytes = encoded(picture->levels, format);
   if (!bytes) return report_error(console, bytes.error());
   const std::filesystem::path folder = std::filesystem::path(a.out).parent_path();
-  if (std::error_code problem; !folder.empty() && !std::filesystem::is_directory(folder, problem))
+  std::error_code problem;
+  if (a.out.empty() || std::filesystem::is_directory(a.out, problem))
+    return report_error(console, {ErrorCode::invalid_input, "--out '" + a.out + "': expected the name of a file"});
+  if (!folder.empty() && !std::filesystem::is_directory(folder, problem))
     return report_error(console,
                         {ErrorCode::invalid_input, "--out " + a.out + ": " + folder.string() + " is not a folder"});
   const std::string truth_file = std::filesystem::path(a.out).replace_extension(".toml").string();
@@ -82,7 +97,7 @@ int run_pattern(Console& console, const PatternArguments& a, std::uint64_t seed)
     console.object({{"pattern", a.kind},
                     {"picture", a.out},
                     {"truth", truth_file},
-                    {"format", a.format},
+                    {"format", format},
                     {"width_px", a.pixels[0]},
                     {"height_px", a.pixels[1]},
                     {"triangles", picture->plate.triangles.size()},
@@ -109,9 +124,9 @@ void add_pattern_command(CLI::App& app, Program& program) {
   command
       ->add_option(
           "--format", a->format,
-          "format of the file: png16 (level 1 is 65535), tiff (32-bit floating point) or npy (64-bit floating point)")
-      ->check(CLI::IsMember({"png16", "tiff", "npy"}))
-      ->capture_default_str();
+          "format of the file: png16 (level 1 is 65535), tiff (32-bit floating point) or npy (64-bit floating point); "
+          "by default that of the extension of --out, else png16")
+      ->check(CLI::IsMember({"png16", "tiff", "npy"}));
   command
       ->add_option("--out", a->out,
                    "file of the picture; its true values are written beside it, to a file that ends with .toml")

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Ranges, pictures, identification, MRTD and test pictures as a user runs them.
+#include <sys/stat.h>
+
 #include <cmath>
 #include <sstream>
 #include <tuple>
@@ -223,12 +225,31 @@ TEST(PatternCommand, ReplacesItsOwnTruthAndNoOtherFile) {
   const std::string truth = content_of(folder.path() / "x.toml");
   EXPECT_THAT(truth, HasSubstr("flat"));
 
-  expect_refused(drawn("edge", "x.tiff"), 2, "x.toml");
+  expect_refused(drawn("edge", "x.tiff"), 2, "x.toml, which is the file of another picture");
   EXPECT_EQ(content_of(folder.path() / "x.toml"), truth);
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "x.tiff"));
   folder.write("plan.toml", "name = \"plan\"\n");
-  expect_refused(drawn("edge", "plan.png"), 2, "plan.toml");
+  expect_refused(drawn("edge", "plan.png"), 2, "plan.toml, which is not a file of true values");
   EXPECT_EQ(content_of(folder.path() / "plan.toml"), "name = \"plan\"\n");
+}
+
+TEST(PatternCommand, WritesTheFormatOfTheExtensionAndToFilesOnly) {
+  const TemporaryFolder folder;
+  const auto drawn = [&](const std::string& out) {
+    return todbench({"pattern", "edge", "--pixels", "64", "48", "--out", out, "--json"}, {.folder = folder.path()});
+  };
+
+  for (const auto& [out, format, start] :
+       {std::tuple("a.npy", "npy", "\x93NUMPY"), std::tuple("b.TIFF", "tiff", "II*"),
+        std::tuple("c.png", "png16", "\x89PNG"), std::tuple("d", "png16", "\x89PNG")}) {
+    EXPECT_EQ(one_object(drawn(out))["format"], format);
+    EXPECT_TRUE(content_of(folder.path() / out).starts_with(start)) << out;
+  }
+
+  expect_refused(drawn(""), 2, "expected the name of a file");
+  expect_refused(drawn("."), 2, "expected the name of a file");
+  ASSERT_EQ(::mkfifo((folder.path() / "pipe").c_str(), 0600), 0);
+  expect_refused(drawn("pipe"), 2, "is a pipe, a socket or a device");
 }
 
 TEST(PictureCommand, WritesEveryStageOnOneGreyScale) {
