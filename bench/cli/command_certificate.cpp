@@ -26,7 +26,7 @@ Result<OrderPlan> order_of(const Session& session, const CertificateArguments& a
 }
 
 int run_certificate(Console& console, const CertificateArguments& arguments) {
-  const auto session = opened(console, arguments.session, {});
+  const auto session = opened(console, arguments.session, {.may_accept = false});
   if (!session) return report_error(console, session.error());
   const auto order = order_of(*session, arguments);
   if (!order) return report_error(console, order.error());

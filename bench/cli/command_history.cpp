@@ -126,6 +126,11 @@ int run_add(Console& console, const HistoryArguments& a) {
         refused.push_back(session.error().message);
         continue;
       }
+      const bool known = index->knows(session->manifest_sha256);
+      if (const auto verified = known ? Result<void>() : verify_history_session(one); !verified) {
+        refused.push_back(verified.error().message);
+        continue;
+      }
       const auto done = index->add(*session);
       if (!done) return report_error(console, done.error());
       ++number[*done];

@@ -258,6 +258,11 @@ Result<HistoryIndex> HistoryIndex::open_read_only(const std::filesystem::path& f
   return HistoryIndex(file, std::move(database));
 }
 
+bool HistoryIndex::knows(const std::string& manifest_sha256) const {
+  Statement known(database_.get(), "SELECT 1 FROM session WHERE manifest_sha256 = ?");
+  return known.bind(manifest_sha256).step() == SQLITE_ROW;
+}
+
 Result<Adding> HistoryIndex::add(const HistorySession& session) {
   if (session.judged_again) return Adding::judged_again;
   sqlite3* const database = database_.get();

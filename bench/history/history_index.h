@@ -43,6 +43,8 @@ class HistoryIndex {
   HistoryIndex& operator=(HistoryIndex&&) noexcept;
   ~HistoryIndex();
 
+  /// Returns whether a session with the manifest of this digest is in the index. False if the index cannot be read.
+  [[nodiscard]] bool knows(const std::string& manifest_sha256) const;
   /// Adds the session with the conditions of stated_condition(). If the session resumed an interrupted session, its
   /// values replace the values of the interrupted session, because both contain the same frames.
   [[nodiscard]] Result<Adding> add(const HistorySession& session);

@@ -14,6 +14,7 @@
 #include "acquisition/core/serial_number.h"
 #include "bench/plan/strict_toml.h"
 #include "bench/session/manifest.h"
+#include "bench/session/open_session.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
 #include "bench/text/json.h"
@@ -274,6 +275,12 @@ std::string date_of_days(double days) {
   std::snprintf(text, sizeof text, "%04d-%02u-%02u", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
                 static_cast<unsigned>(date.day()));
   return text;
+}
+
+Result<void> verify_history_session(const std::filesystem::path& folder) {
+  TODBENCH_TRY(const SessionCheck check, check_session(folder));
+  if (check.not_vouched_for.empty()) return {};
+  return fail(ErrorCode::invalid_input, folder.string() + ": the session was changed: " + check.sentence);
 }
 
 }  // namespace todbench

@@ -47,6 +47,9 @@ struct HistorySession {
 /// number. Errors: `invalid_input` (not a session, no manifest, changed files, no camera serial number, or two), `io`
 /// with the path.
 [[nodiscard]] Result<HistorySession> read_history_session(const std::filesystem::path& folder);
+/// Compares all files of a session with its manifest, also those that the history does not use. Reads every byte.
+/// Error: `invalid_input` with the changed files.
+[[nodiscard]] Result<void> verify_history_session(const std::filesystem::path& folder);
 
 /// Returns the session folders at or below a folder, sorted. Errors: `not_found`, `io` with the path.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> session_folders_below(const std::filesystem::path& folder);

@@ -116,7 +116,8 @@ Result<Session> open_session(const std::filesystem::path& folder, const Opening&
   const bool taken = vouched_for || opening.accept_changed || (cut_off && opening.accept_cut_off);
   if (!taken) {
     return fail(ErrorCode::invalid_input, folder.string() + ": " + (cut_off ? "" : "the session was changed: ") +
-                                              check.sentence + " (use --accept-changed to read it anyway)");
+                                              check.sentence +
+                                              (opening.may_accept ? " (use --accept-changed to read it anyway)" : ""));
   }
   Result<Session> session = read_session(folder);
   if (!session) return session;

@@ -37,6 +37,7 @@ struct SessionCheck {
 /// Sessions that a reader accepts. Code that presents a session must show its `accepted_changes` and `cut_off`.
 struct Opening {
   bool accept_changed = false;  ///< accepts sessions with files that the run did not write in this form
+  bool may_accept = true;       ///< whether the user may accept changes: the error then names the option
   bool accept_cut_off = false;  ///< accepts runs that were cut off, which have no manifest
 };
 

@@ -94,6 +94,19 @@ TEST_F(ChangedSessions, AHistoryIsNotCheckedForWhatItDoesNotHold) {
   expect_refused(check({"--measure", "acuity", "--at-least", "-1"}), 2, "above 0");
 }
 
+TEST_F(ChangedSessions, AreNotAddedToAHistoryAndGetNoCertificate) {
+  change_a_digit("m/trials.csv", 0.5);
+
+  const Ended added = run({"history", "add", "m", "--index", "index.sqlite"});
+  EXPECT_EQ(added.code, 2);
+  EXPECT_THAT(added.out, HasSubstr("added 0"));
+  EXPECT_THAT(added.err, HasSubstr("trials.csv was changed after the session"));
+  const Ended certificate = run({"certificate", "m", "--dcc", "m.xml"});
+
+  expect_refused(certificate, 2, "trials.csv was changed after the session");
+  EXPECT_THAT(certificate.err, ::testing::Not(HasSubstr("--accept-changed"))) << "it has no such option";
+}
+
 TEST_F(ChangedSessions, VerifySaysWhyASessionWithAForeignFileIsNotIntact) {
   write("m/notes/mine.txt", "x");
 

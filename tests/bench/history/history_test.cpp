@@ -264,6 +264,19 @@ TEST_F(History, RefusesWhatIsNoSessionAnyMore) {
   EXPECT_THAT(refused.error().message, HasSubstr("curve.csv"));
 }
 
+TEST_F(History, VerifiesTheFilesThatItDoesNotReadToo) {
+  const auto folder = session("a");
+  EXPECT_TRUE(verify_history_session(folder));
+  std::ofstream(folder / "trials.csv", std::ios::app) << "1\n";
+
+  const auto refused = verify_history_session(folder);
+
+  EXPECT_TRUE(read_history_session(folder));
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::invalid_input);
+  EXPECT_THAT(refused.error().message, HasSubstr("trials.csv"));
+}
+
 TEST_F(History, SaysOfASessionWithoutResultThatItHasNone) {
   const auto folder = session("a");
   std::filesystem::remove(folder / "curve.csv");
