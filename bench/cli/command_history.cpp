@@ -214,11 +214,14 @@ int run_show(Console& console, const HistoryArguments& a) {
   }
   std::vector<TableRow> rows;
   for (const HistorySeries& series : *all) {
-    const std::string name = series.measure + (series.condition.empty() ? "" : " " + series.condition);
+    const std::string name = series.measure + (series.condition.empty() ? "" : " " + series.condition) +
+                             (series.unit_text.empty() ? "" : " [" + series.unit_text + "]");
     const auto add = [&](const std::string& started_utc, const ChartValue& value, const ChartPoint* point,
                          const std::string& state) {
       const bool charted = point != nullptr && !point->in_reference;
-      rows.push_back({name, started_utc, fixed(shown_value(series, value.value), 4), fixed(value.u, 4),
+      // An uncertainty of ln x is relative.
+      const double shown = shown_value(series, value.value), u = series.scale == "ln" ? value.u * shown : value.u;
+      rows.push_back({name, started_utc, fixed(shown, 4), fixed(u, 4),
                       charted ? fixed(point->ewma, 2) + " of " + fixed(point->ewma_limit, 2) : "",
                       charted ? fixed(point->cusum_up, 1) + ", " + fixed(point->cusum_down, 1) : "", state});
     };

@@ -12,9 +12,11 @@
 #include "acquisition/base/safe_text.h"
 #include "acquisition/base/try.h"
 #include "acquisition/core/serial_number.h"
+#include "bench/plan/joined_uncertainty.h"
 #include "bench/plan/strict_toml.h"
 #include "bench/session/manifest.h"
 #include "bench/session/open_session.h"
+#include "bench/session/uncertainty_record.h"
 #include "bench/text/csv_table.h"
 #include "bench/text/files.h"
 #include "bench/text/json.h"
@@ -63,17 +65,25 @@ std::string lens_of(const Json& camera) {
 /// File of a session without a curve (`todbench scene-dependence`).
 constexpr const char* curveless = "scene-dependence.json";
 
-/// Returns the standard uncertainty of ln acuity by contrast, from the rows that are not common to a series.
-Result<std::map<double, double>> stated_uncertainties(const std::filesystem::path& folder) {
-  std::map<double, double> stated;
-  if (!is_there(folder / "uncertainty.json")) return stated;
+/// Returns the uncertainty of ln acuity by contrast, from all rows of the budget that are not common to a series: the
+/// half-width of their 95 % interval, as a normal standard deviation. The statistical interval cannot be joined with
+/// the stated rows, because it contains the scatter of the contrast, which has a row of its own.
+Result<std::map<double, double>> budget_uncertainties(const std::filesystem::path& folder) {
+  std::map<double, double> of_budget;
+  if (!is_there(folder / "uncertainty.json")) return of_budget;
   TODBENCH_TRY(const auto json, vouched_json(folder, "uncertainty.json"));
-  if (!json.contains("points")) return stated;
-  for (const Json& point : json["points"]) {
-    const auto contrast_k = number_at(point, "delta_t_k"), u = number_at(point, "u_not_common_to_series");
-    if (contrast_k && u) stated[*contrast_k] = *u;
+  TODBENCH_TRY(const auto budget, uncertainty_from(json));
+  for (const PointUncertainty& point : budget.points) {
+    JoinedUncertainty sum;
+    bool with_trials = false;
+    for (const AppliedRow& applied : point.rows) {
+      if (std::ranges::find(applied.row.common, BudgetCommon::series) != applied.row.common.end()) continue;
+      sum.add(applied.contribution, applied.row.degrees_of_freedom);
+      with_trials = with_trials || applied.row.name == finite_trials_row;
+    }
+    if (with_trials) of_budget[point.set_delta_t_k] = sum.half_width(0.025) / normal_z95;
   }
-  return stated;
+  return of_budget;
 }
 
 /// Returns the contrasts whose threshold is unfit for a decision; they are not used in the history either.
@@ -95,7 +105,7 @@ Result<void> add_acuities(HistorySession& session, const std::filesystem::path& 
   if (is_there(folder / curveless)) return {};
   TODBENCH_TRY(const auto text, vouched_text(folder, "curve.csv"));
   TODBENCH_TRY(const auto table, parse_csv(text, (folder / "curve.csv").string()));
-  TODBENCH_TRY(const auto stated, stated_uncertainties(folder));
+  TODBENCH_TRY(const auto of_budget, budget_uncertainties(folder));
   TODBENCH_TRY(const auto unfit, unfit_contrasts(folder));
   const auto column = [&](const char* name) { return table.column(name).value_or(table.header.size()); };
   const std::size_t of_side = column("side"), contrast = column("set_delta_t_k"), acuity = column("acuity_per_mrad"),
@@ -117,10 +127,9 @@ Result<void> add_acuities(HistorySession& session, const std::filesystem::path& 
     // Values without uncertainty are not kept.
     if (!contrast_k || !value || !from || !to || !(*value > 0) || !(*from > 0) || !(*to > *from)) continue;
     if (std::ranges::find(unfit, *contrast_k) != unfit.end()) continue;
-    const auto more = stated.find(*contrast_k);
-    session.values.push_back(
-        {"acuity", "dT=" + number_text(*contrast_k) + "K", "1/mrad", "ln", std::log(*value),
-         std::hypot(std::log(*to / *from) / (2 * normal_z95), more == stated.end() ? 0 : more->second)});
+    const auto budget = of_budget.find(*contrast_k);
+    session.values.push_back({"acuity", "dT=" + number_text(*contrast_k) + "K", "1/mrad", "ln", std::log(*value),
+                              budget == of_budget.end() ? std::log(*to / *from) / (2 * normal_z95) : budget->second});
   }
   return {};
 }

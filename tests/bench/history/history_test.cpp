@@ -12,7 +12,9 @@
 #include "bench/history/fleet_history.h"
 #include "bench/history/history_index.h"
 #include "bench/history/history_series.h"
+#include "bench/plan/budget_row.h"
 #include "bench/session/manifest.h"
+#include "bench/session/uncertainty_record.h"
 #include "tests/support/source_file.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/tod/measures/measures_reference.h"
@@ -172,6 +174,34 @@ void give_camera(const std::filesystem::path& folder, const std::string& serial,
   change(folder / "fits.json", R"("sensor": "sc2000")", R"("sensor": "v4l2:Topdon-TC001-)" + serial + "\"");
   change(folder / "session.toml", "unit = \"\"", "unit = \"" + unit + "\"");
   ASSERT_TRUE(write_manifest(folder));
+}
+
+// The statistical interval contains the scatter of the contrast, whose row must not be counted a second time.
+TEST_F(History, TakesTheUncertaintyOfTheRowsThatAreNotCommonToASeries) {
+  const auto folder = session("a");
+  const auto row = [](std::string_view name, double u, std::optional<double> freedom, bool of_series) {
+    AppliedRow applied;
+    applied.row.name = name;
+    applied.row.degrees_of_freedom = freedom;
+    if (of_series) applied.row.common = {BudgetCommon::series};
+    applied.contribution = u;
+    return applied;
+  };
+  CurveUncertainty budget;
+  budget.points.push_back({.set_delta_t_k = 16.9,
+                           .rows = {row(finite_trials_row, 0.004, 9, false), row(seen_contrast_row, 0.012, 7, false),
+                                    row("form", 0.003, std::nullopt, false), row("certificate", 0.05, 50, true)},
+                           .u_stated = 0.0515,
+                           .u_not_series = 0.0124});
+  std::ofstream(folder / "uncertainty.json", std::ios::binary) << uncertainty_record(budget)->dump();
+  ASSERT_TRUE(write_manifest(folder));
+
+  const auto found = read_history_session(folder);
+
+  ASSERT_TRUE(found) << found.error().message;
+  // u = sqrt(0.004^2 + 0.012^2 + 0.003^2) = 0.013; nu = 0.013^4 / (0.004^4 / 9 + 0.012^4 / 7) = 9.55; the quantile of t
+  // there is 2.2424.
+  EXPECT_NEAR(found->values.front().u, 0.013 * 2.2424 / 1.95996, 1e-5);
 }
 
 TEST_F(History, CountsNoFrameTwiceAndMixesNoObservers) {
