@@ -124,8 +124,8 @@ set(todbench_hang_s 1800)
 
 # todbench_test(NAME SOURCES ... DEPENDS ... [LABELS ...] [SANITIZERS address thread [UNSANITIZED ...]] [SHARDS n | EACH_CASE] [COST s]
 # [TIMED] [APART ...] [PRECOMPILED KIND]): one GoogleTest program.
-#   LABELS      of its tests for ctest (science: no camera library; foreign: reads bytes from outside; study: a long form). The target
-#               todbench_tests_LABEL builds the programs with that label
+#   LABELS      of its tests for ctest (science: no camera library; foreign: reads bytes from outside; threads: threads of cameras and
+#               instruments; study: a long form). The target todbench_tests_LABEL builds the programs with that label
 #   SANITIZERS  a build with a sanitizer has only the programs that name it
 #   UNSANITIZED cases, as --gtest_filter names them, that such a build leaves out: long loops over numbers whose code shorter cases of the
 #               same program run through as well

@@ -259,16 +259,12 @@ struct AdaptiveRow {
 };
 
 std::vector<AdaptiveRow> adaptive_rows() {
-  return {{.name = "adaptive, 3 %", .half_width_percent = 3, .short_seeds = 3},
+  return {{.name = "adaptive, 3 %", .half_width_percent = 3, .short_seeds = 2},
           {.name = "adaptive, 3 %, 12 phases", .half_width_percent = 3, .phases = 12},
           {.name = "adaptive, 2 %", .half_width_percent = 2},
-          {.name = "adaptive, 5 %", .half_width_percent = 5, .short_seeds = 1},
+          {.name = "adaptive, 5 %", .half_width_percent = 5},
           {.name = "adaptive, 3 %, 10 and 1 K", .half_width_percent = 3, .delta_t_k = {10, 1}, .short_seeds = 1},
-          {.name = "adaptive, 3 %, 10 and 1 K, 12 phases",
-           .half_width_percent = 3,
-           .phases = 12,
-           .delta_t_k = {10, 1},
-           .short_seeds = 1},
+          {.name = "adaptive, 3 %, 10 and 1 K, 12 phases", .half_width_percent = 3, .phases = 12, .delta_t_k = {10, 1}},
           {.name = "adaptive, 2 %, 10 and 1 K", .half_width_percent = 2, .delta_t_k = {10, 1}},
           {.name = "adaptive, 3 %, six contrasts", .half_width_percent = 3, .delta_t_k = {16.9, 8, 3, 1, 0.5, 0.2}},
           {.name = "adaptive, 4 %, 0.5 K alone", .half_width_percent = 4, .delta_t_k = {0.5}},

@@ -36,19 +36,17 @@ double blurred_square(double side, double sigma, cv::Point2d at) {
 // Diffraction and the detector also blur the light of the halo: by 0.3 pitches, of 3 and more. Beside an edge, the tail
 // of diffraction takes up to 1 % of it: 8e-4.
 TEST(Halo, SpreadsItsShareOfTheLightInANormalBlur) {
-  for (const double sigma : {3.0, 50.0}) {
-    for (const double side : {2.0, 12.0, 60.0}) {
-      constexpr double share = 0.08;
-      const SensorSpec spec = with_halo(share, sigma), plain = test::sc2000();
-      const ImageChain haze(spec, full_plan(spec, {}, {}), Accuracy::normal());
-      const ImageChain sharp(plain, full_plan(plain, {}, {}), Accuracy::normal());
-      const cv::Mat1d found = haze.infinite_plane(square(side), {-20, -20}, 8, {6, 6}).values;
-      const cv::Mat1d core = sharp.infinite_plane(square(side), {-20, -20}, 8, {6, 6}).values;
-      for (int y = 0; y < 6; ++y) {
-        for (int x = 0; x < 6; ++x) {
-          const double spread = blurred_square(side, std::hypot(sigma, 0.3), {8.0 * x - 20, 8.0 * y - 20});
-          EXPECT_NEAR(found(y, x), (1 - share) * core(y, x) + share * spread, 8e-4) << sigma << " " << side;
-        }
+  for (const auto& [sigma, side] : {std::pair(3.0, 2.0), {3.0, 60.0}, {50.0, 12.0}}) {
+    constexpr double share = 0.08;
+    const SensorSpec spec = with_halo(share, sigma), plain = test::sc2000();
+    const ImageChain haze(spec, full_plan(spec, {}, {}), Accuracy::normal());
+    const ImageChain sharp(plain, full_plan(plain, {}, {}), Accuracy::normal());
+    const cv::Mat1d found = haze.infinite_plane(square(side), {-20, -20}, 8, {6, 6}).values;
+    const cv::Mat1d core = sharp.infinite_plane(square(side), {-20, -20}, 8, {6, 6}).values;
+    for (int y = 0; y < 6; ++y) {
+      for (int x = 0; x < 6; ++x) {
+        const double spread = blurred_square(side, std::hypot(sigma, 0.3), {8.0 * x - 20, 8.0 * y - 20});
+        EXPECT_NEAR(found(y, x), (1 - share) * core(y, x) + share * spread, 8e-4) << sigma << " " << side;
       }
     }
   }
@@ -72,7 +70,7 @@ TEST(Halo, OfWholeFramesIsThatOfThePolygonAlone) {
   for (const double sigma : {4.0, 25.0}) {
     const SensorSpec spec = with_halo(0.1, sigma);
     const SensorPlan plan = full_plan(spec, {}, {});
-    const cv::Size size(90, 70);
+    const cv::Size size(60, 50);
     // One square in the frame, one so far outside that only its halo comes in.
     const Polygon inside = square(20, {40.3, 30.1}), outside = square(30, {-30.4, 31});
     const ImageChain chain(spec, plan, Accuracy::normal());
