@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -43,7 +44,8 @@ std::vector<double> not_increasing(const std::vector<double>& values) {
   return out;
 }
 
-SetCriterion range_of_75_percent(const IdentificationStudyTask& task, const std::vector<IdentificationPoint>& points) {
+SetCriterion range_of_75_percent(const IdentificationStudyTask& task, const std::vector<IdentificationPoint>& points,
+                                 std::vector<std::string>& notes) {
   const auto proportions = [&](const std::vector<std::size_t>& draws) {
     std::vector<double> out;
     for (const auto& point : points) {
@@ -55,23 +57,22 @@ SetCriterion range_of_75_percent(const IdentificationStudyTask& task, const std:
   };
   std::vector<std::size_t> draws(points.front().by_draw.size());
   for (std::size_t d = 0; d < draws.size(); ++d) draws[d] = d;
-  SetCriterion out;
-  out.value = crossing_of_75_percent(task.ranges_m, proportions(draws)).at;
   // Draws are the independent units: targets, aspects and ranges share them.
-  std::vector<double> found;
+  std::vector<Crossing75> resampled;
   const RandomStream numbers(task.seed, "identification.resample");
   for (std::uint64_t r = 0; r < resamples; ++r) {
     std::vector<std::size_t> drawn;
     for (std::uint64_t d = 0; d < draws.size(); ++d) drawn.push_back(numbers.sub(r).below(draws.size(), d));
-    const Crossing75 crossing = crossing_of_75_percent(task.ranges_m, proportions(drawn));
-    found.push_back(crossing.at ? *crossing.at : crossing.beyond_last ? 1e300 : 0);
+    resampled.push_back(crossing_of_75_percent(task.ranges_m, proportions(drawn)));
   }
-  std::sort(found.begin(), found.end());
-  const auto side = [&](std::size_t at) -> std::optional<double> {
-    if (found[at] <= 0 || found[at] >= 1e300) return std::nullopt;
-    return found[at];
-  };
-  out.ci95 = {side(resamples / 40), side(resamples - 1 - resamples / 40)};
+  const Crossing75 found = crossing_of_75_percent(task.ranges_m, proportions(draws));
+  SetCriterion out = with_interval(found, resampled);
+  if (out.ci95.low && found.interpolation_ln > 0.5 * std::log(*out.value / *out.ci95.low)) {
+    notes.push_back(fmt::format(
+        "the ranges beside the range of 75 % are far apart: the interpolation between them may be wrong by {:.1f} %, "
+        "which is in the intervals; test more ranges near {:.4g} m",
+        100 * std::expm1(found.interpolation_ln), *out.value));
+  }
   return out;
 }
 
@@ -256,10 +257,35 @@ Crossing75 crossing_of_75_percent(const std::vector<double>& at, const std::vect
   if (p.front() < wanted) return {};
   for (std::size_t i = 0; i + 1 < p.size(); ++i) {
     if (p[i + 1] >= wanted) continue;
-    const double share = (p[i] - wanted) / (p[i] - p[i + 1]);
-    return {at[i] * std::pow(at[i + 1] / at[i], share), false};
+    const double share = (p[i] - wanted) / (p[i] - p[i + 1]), ln_step = std::log(at[i + 1] / at[i]);
+    // No proportion of a finite number of answers proves more.
+    static constexpr double surest = 0.9995;
+    // Normal and Weibull functions cross up to 1.65 times as far away as the logistic function.
+    constexpr double of_other_functions = 1.7;
+    const auto log_odds = [](double proportion) {
+      const double inside = std::clamp(proportion, 1 - surest, surest);
+      return std::log(inside / (1 - inside));
+    };
+    const double logistic_share = (log_odds(p[i]) - log_odds(wanted)) / (log_odds(p[i]) - log_odds(p[i + 1]));
+    return {at[i] * std::exp(share * ln_step), false, of_other_functions * std::abs(logistic_share - share) * ln_step};
   }
   return {std::nullopt, true};
+}
+
+SetCriterion with_interval(const Crossing75& found, const std::vector<Crossing75>& resampled) {
+  constexpr double before_first = 0, beyond_last = std::numeric_limits<double>::infinity();
+  std::vector<double> sorted;
+  for (const Crossing75& crossing : resampled)
+    sorted.push_back(crossing.at.value_or(crossing.beyond_last ? beyond_last : before_first));
+  std::sort(sorted.begin(), sorted.end());
+  const auto side = [&](std::size_t at) -> std::optional<double> {
+    if (sorted[at] == before_first || sorted[at] == beyond_last) return std::nullopt;
+    if (!found.at) return sorted[at];
+    const double half = std::log(sorted[at] / *found.at);
+    return *found.at * std::exp(std::copysign(std::hypot(half, found.interpolation_ln), half));
+  };
+  const std::size_t outside = sorted.size() / 40;
+  return {.value = found.at, .ci95 = {side(outside), side(sorted.size() - 1 - outside)}};
 }
 
 Result<IdentificationTask> experiment_of(const IdentificationStudyTask& task) {
@@ -343,7 +369,7 @@ Result<IdentificationStudy> study_identification(const IdentificationStudyTask& 
   IdentificationStudy study = described(task, experiment);
   TODBENCH_TRY(study.points, identify(experiment));
   add_notes_of_stages(study);
-  study.r75_m = range_of_75_percent(task, study.points);
+  study.r75_m = range_of_75_percent(task, study.points, study.notes);
   TODBENCH_TRY_VOID(rate_by_curve(task, experiment.ranges.back().transmittance, study));
   TODBENCH_TRY_VOID(add_spreads(task, experiment.ranges.back().transmittance, study));
   return study;

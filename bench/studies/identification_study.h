@@ -72,9 +72,16 @@ struct SetCriterion {
 struct Crossing75 {
   std::optional<double> at;
   bool beyond_last = false;  ///< the proportion is at least 75 % at every position
+  /// Possible error of the interpolation, in ln position: 1.7 times the distance to the crossing of a logistic
+  /// function of ln position through the same two proportions. Small if the positions beside the crossing are close to
+  /// each other.
+  double interpolation_ln = 0;
 };
 /// Returns the crossing of these proportions.
 [[nodiscard]] Crossing75 crossing_of_75_percent(const std::vector<double>& at, const std::vector<double>& proportions);
+/// Returns the crossing with the 95 % interval of the crossings of resampled proportions. Each side also contains the
+/// error of the interpolation, in quadrature.
+[[nodiscard]] SetCriterion with_interval(const Crossing75& found, const std::vector<Crossing75>& resampled);
 
 /// Result of the study.
 struct IdentificationStudy {

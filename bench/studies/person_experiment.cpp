@@ -302,9 +302,7 @@ SetCriterion passing_of(const std::vector<double>& at, const std::vector<std::ve
     shares.push_back(static_cast<double>(std::count(answers.begin(), answers.end(), true)) /
                      static_cast<double>(answers.size()));
   }
-  SetCriterion out;
-  out.value = crossing_of_75_percent(at, shares).at;
-  std::vector<double> found;
+  std::vector<Crossing75> resampled;
   const RandomStream numbers(seed, "person.resample");
   for (std::uint64_t r = 0; r < resamples_of_answers; ++r) {
     std::vector<double> drawn;
@@ -315,15 +313,9 @@ SetCriterion passing_of(const std::vector<double>& at, const std::vector<std::ve
         sum += answers[numbers.sub(r).below(answers.size(), index++)] ? 1 : 0;
       drawn.push_back(sum / static_cast<double>(answers.size()));
     }
-    const Crossing75 crossing = crossing_of_75_percent(at, drawn);
-    found.push_back(crossing.at ? *crossing.at : crossing.beyond_last ? 1e300 : 0);
+    resampled.push_back(crossing_of_75_percent(at, drawn));
   }
-  std::sort(found.begin(), found.end());
-  const auto side = [&](std::size_t k) -> std::optional<double> {
-    return found[k] > 0 && found[k] < 1e300 ? std::optional(found[k]) : std::nullopt;
-  };
-  out.ci95 = {side(resamples_of_answers / 40), side(resamples_of_answers - 1 - resamples_of_answers / 40)};
-  return out;
+  return with_interval(crossing_of_75_percent(at, shares), resampled);
 }
 
 std::optional<double> inverse(const std::optional<double>& value) {

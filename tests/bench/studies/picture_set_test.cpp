@@ -5,9 +5,12 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
+#include <utility>
 
+#include "acquisition/base/normal.h"
 #include "acquisition/recording/tiff_writer.h"
 #include "bench/plan/descriptions.h"
 #include "bench/studies/identification_study.h"
@@ -230,6 +233,29 @@ TEST(PictureSets, OfRenderedPolygonsAreIdentifiedAsThePolygonsAre) {
     EXPECT_LT(
         cv::norm(shown->icons()[t], drawn->icons()[t], cv::NORM_L1) / static_cast<double>(shown->icons()[t].total()),
         0.05);
+}
+
+// Proportions that fall with ln range as a normal distribution or as a Weibull function; 75 % at 1300 m.
+TEST(Crossing75, AllowsForItsInterpolationWhereRangesAreFarApart) {
+  const auto normal = [](double range_m) { return normal_probability(0.67449 - std::log(range_m / 1300) / 0.5); };
+  const auto weibull = [](double range_m) { return std::exp(std::log(0.75) * std::pow(range_m / 1300, 2)); };
+  for (const std::function<double(double)>& share : {std::function<double(double)>(normal), {weibull}}) {
+    const auto found = [&](const std::vector<double>& ranges_m) {
+      std::vector<double> proportions;
+      for (const double range_m : ranges_m) proportions.push_back(share(range_m));
+      const Crossing75 crossing = crossing_of_75_percent(ranges_m, proportions);
+      return std::pair(crossing, with_interval(crossing, std::vector(40, crossing)));
+    };
+    for (const double first_m : {400.0, 500.0, 600.0}) {
+      const auto [far, of_far] = found({first_m, 2 * first_m, 4 * first_m});
+      const double off = std::abs(std::log(*far.at / 1300));
+      EXPECT_LE(off, far.interpolation_ln) << first_m;
+      EXPECT_NEAR(std::log(*of_far.ci95.high / *far.at), far.interpolation_ln, 1e-12) << first_m;
+    }
+    const auto [near, of_near] = found({1200, 1250, 1350, 1400});
+    EXPECT_LT(near.interpolation_ln, 0.003);
+    EXPECT_NEAR(*near.at, 1300, 2);
+  }
 }
 
 }  // namespace
