@@ -121,14 +121,9 @@ int run_add(Console& console, const HistoryArguments& a) {
     if (!sessions) return report_error(console, sessions.error());
     if (sessions->empty()) refused.push_back(folder + ": contains no session folder");
     for (const auto& one : *sessions) {
-      const auto session = read_history_session(one);
+      const auto session = verified_session(*index, one);
       if (!session) {
         refused.push_back(session.error().message);
-        continue;
-      }
-      const bool known = index->knows(session->manifest_sha256);
-      if (const auto verified = known ? Result<void>() : verify_history_session(one); !verified) {
-        refused.push_back(verified.error().message);
         continue;
       }
       const auto done = index->add(*session);

@@ -9,8 +9,8 @@
 namespace todbench {
 
 /// Turns SIGINT, SIGTERM and SIGHUP into a stop request, except signals that the parent process set to be ignored
-/// (nohup, background jobs). A second signal ends the process immediately with exit code 130. The first signal does so
-/// too if no code has called observe(), token() or wait(): a short command need not look at the request. Create it
+/// (nohup, background jobs). A second signal ends the process immediately with exit code 130. The first signal also
+/// ends it if no code has called observe(), token() or wait(): a short command need not look at the request. Create it
 /// before any other thread starts, because threads inherit the blocked signals.
 class StopSignals {
  public:

@@ -263,6 +263,12 @@ bool HistoryIndex::knows(const std::string& manifest_sha256) const {
   return known.bind(manifest_sha256).step() == SQLITE_ROW;
 }
 
+Result<HistorySession> verified_session(const HistoryIndex& index, const std::filesystem::path& folder) {
+  TODBENCH_TRY(auto session, read_history_session(folder));
+  if (!index.knows(session.manifest_sha256)) TODBENCH_TRY_VOID(verify_history_session(folder));
+  return session;
+}
+
 Result<Adding> HistoryIndex::add(const HistorySession& session) {
   if (session.judged_again) return Adding::judged_again;
   sqlite3* const database = database_.get();

@@ -65,6 +65,10 @@ class HistoryIndex {
   std::unique_ptr<sqlite3, Close> database_;
 };
 
+/// Reads a session to add. Verifies all its files, unless the index knows the session. Errors: those of
+/// read_history_session() and verify_history_session().
+[[nodiscard]] Result<HistorySession> verified_session(const HistoryIndex& index, const std::filesystem::path& folder);
+
 /// Returns $XDG_DATA_HOME/todbench/history.sqlite, or the same below ~/.local/share.
 [[nodiscard]] std::filesystem::path default_history_file();
 

@@ -38,8 +38,8 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   void signal(int number) const;
-  /// Number of its threads, 0 when it has ended. The program under test starts its second one when it is ready for
-  /// signals.
+  /// Number of threads of the process; 0 when it has ended. The program under test starts its second thread when it is
+  /// ready for signals.
   [[nodiscard]] int threads() const;
   /// Reads the output while the process runs, until `enough` says so; false when it ends first or patience does (two
   /// minutes, more on a busy machine).

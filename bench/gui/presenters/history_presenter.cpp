@@ -136,9 +136,8 @@ void HistoryPresenter::add_sessions(const std::filesystem::path& folder) {
     return;
   }
   for (const auto& one : *folders) {
-    const auto session = read_history_session(one);
-    if (!session || (!index->knows(session->manifest_sha256) && !verify_history_session(one))) continue;
-    (void)index->add(*session);
+    const auto session = verified_session(*index, one);
+    if (session) (void)index->add(*session);
   }
   refresh();
 }
